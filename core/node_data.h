@@ -1,0 +1,47 @@
+#pragma once
+#include <cstdint>
+#include <glm/gtc/type_precision.hpp>
+#include <vector>
+
+#include "core/node_key.h"
+
+namespace strata {
+
+/// Consecutive points of one node with their own bounds; one work-group draws one batch (Schütz 2022, 3.1).
+struct Batch {
+  static constexpr std::uint32_t kMaxPoints = 10240;
+
+  std::uint32_t firstPoint = 0;  ///< within the node
+  std::uint32_t pointCount = 0;
+  glm::dvec3 boxMin{0.0};        ///< relative to NodeData::origin; a multiple of the store's grid step
+  glm::dvec3 boxSize{0.0};       ///< 2^bits grid steps along each axis: what the 30-bit coordinates span
+  glm::u8vec3 bits{0};           ///< bits an axis that carry information; above 30 the rest is not drawn
+};
+
+/// How many of a coordinate's 30 bits are used: 10, 20 or 30 (Schütz 2022, 3.3).
+enum class Precision : std::uint8_t { low10 = 1, medium20 = 2, full30 = 3 };
+
+/// One node as rasterizers read it: decoded planes, a struct of arrays. Immutable once it has left the decoder.
+/// The position of point i of batch b along an axis, at p = 1, 2 or 3 planes:
+///   X = position[0]>>axis*10 &1023, then the same of position[1], position[2]: 10*p bits, most significant first
+///   x = origin + boxMin + (X + h) * boxSize / 2^(10p),  h = 0.5 when the batch has more bits than 10p, else 0
+/// (Schütz 2022 eq. 1 over a box of 2^bits grid steps instead of the tight one, so that 30 bits give back the
+/// source's integer exactly).
+struct NodeData {
+  NodeKey key;
+  glm::dvec3 origin{0.0};                      ///< world
+  std::vector<Batch> batches;                  ///< by ascending firstPoint; cover all points
+  std::vector<std::uint32_t> position[3];      ///< x | y<<10 | z<<20; [1] and [2] are empty when not loaded
+  std::vector<std::uint32_t> colour;           ///< R | G<<8 | B<<16 | 255<<24; empty when the store has none
+  std::vector<std::uint16_t> intensity;        ///< empty when the store has none
+  std::vector<std::uint8_t> classification;    ///< empty when the store has none
+
+  std::uint32_t pointCount() const { return static_cast<std::uint32_t>(position[0].size()); }
+  int loadedPlanes() const { return position[1].empty() ? 1 : position[2].empty() ? 2 : 3; }
+  std::uint64_t bytes() const;                 ///< of memory held
+};
+
+/// The position of one point in double precision, as every rasterizer must place it.
+glm::dvec3 pointPosition(const NodeData& node, const Batch& batch, std::uint32_t point, Precision precision);
+
+}  // namespace strata

@@ -1,0 +1,47 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/node_data.h"
+#include "io/store.h"
+
+namespace strata {
+
+/// The points of one node in full: what the converter writes and an export reads back.
+struct NodePoints {
+  std::vector<std::int64_t> grid[3];     ///< integers of StoreGrid
+  std::vector<std::byte> attributes;     ///< records of StoreInfo::layout
+
+  std::size_t count() const { return grid[0].size(); }
+};
+
+/// A node's payload and the part of its record that describes it (offset is the writer's to fill in).
+struct EncodedNode {
+  std::vector<std::byte> payload;
+  std::uint32_t headBytes = 0;
+  std::uint64_t headChecksum = 0;
+  std::uint32_t drawBytes[3] = {0, 0, 0};
+};
+
+/// Packs points, in the order given, into batches and planes as docs/format.md says. Lossless.
+EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info);
+
+/// How many leading bytes of the payload a drawing at `precision` has to fetch.
+std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
+
+/// Decodes the drawing planes out of the first drawBytes(record, precision) bytes of the payload.
+/// Trusts nothing: throws Error (`points.bin: node r042: block checksum mismatch`) for anything that does not fit.
+/// `out` is replaced; the memory it holds is used again. After an exception it holds nothing of use.
+void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
+                      Precision precision, NodeData& out);
+
+/// Decodes everything, exactly as it went into encodeNode. Throws Error as above.
+NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload);
+
+/// Reads from the store's points and decodes.
+void readForDrawing(const Store& store, std::uint32_t nodeIndex, Precision precision, NodeData& out);
+NodePoints readAll(const Store& store, std::uint32_t nodeIndex);
+
+}  // namespace strata

@@ -1,0 +1,92 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/box.h"
+#include "core/point_layout.h"
+
+namespace strata {
+
+/// Points as they come out of a reader, positions apart from the packed attribute records.
+struct PointBlock {
+  std::vector<glm::dvec3> positions;   ///< metres, relative to SourceInfo::origin
+  std::vector<std::byte> attributes;   ///< positions.size() records of SourceInfo::layout.stride() bytes
+
+  std::size_t count() const { return positions.size(); }
+};
+
+/// What a LAS or LAZ file says beyond its points; kept so that an export gives it back.
+struct LasMeta {
+  struct Vlr {
+    std::string userId;
+    std::uint16_t recordId = 0;
+    std::string description;
+    std::vector<std::uint8_t> data;
+  };
+  std::uint8_t versionMinor = 2;
+  std::uint8_t pointFormat = 0;
+  std::uint16_t recordBytes = 20;   ///< of the uncompressed record, extra bytes included
+  glm::dvec3 scale{0.001};          ///< of the header; an export uses them again where the points fit
+  glm::dvec3 offset{0.0};
+  std::uint16_t globalEncoding = 0;
+  std::uint16_t fileSourceId = 0;
+  std::uint16_t creationDay = 0;
+  std::uint16_t creationYear = 0;
+  std::string systemIdentifier;
+  std::string generatingSoftware;
+  std::vector<Vlr> vlrs;            ///< without LASzip's own and COPC's
+};
+
+/// What is known of one scan before its points are read.
+struct SourceInfo {
+  std::string path;                 ///< as the user gave it; for messages and the store's list of sources
+  std::string format;               ///< "LAZ 1.4 format 8", "PLY binary", "synthetic city"
+  std::uint64_t pointCount = 0;     ///< as the header claims, already checked against the file's size
+  bool boundsExact = false;         ///< the header's bounds can be trusted to hold every point (else they are a hint)
+  Box bounds;                       ///< world; empty when the format states none
+  glm::dvec3 origin{0.0};           ///< what block positions are relative to (LAS: the header's offset)
+  glm::dvec3 step{0.0};             ///< the source's grid (LAS: its scale factors); for float sources the size of
+                                    ///< the last digit that carries information (text: of its decimals; float32:
+                                    ///< about one ulp of the largest coordinate); 0 = unknown
+  bool gridExact = false;           ///< every position is origin + integer * step
+  PointLayout layout;
+  std::string crs;                  ///< WKT, or "EPSG:n", or empty
+  std::uint64_t fileBytes = 0;
+  std::uint64_t uncompressedBytes = 0;  ///< as plain records; what "input size" means for LAZ
+  std::optional<LasMeta> las;
+};
+
+/// Reads the points of one part, front to back. Not thread-safe; one thread a reader.
+class PointReader {
+ public:
+  virtual ~PointReader() = default;
+  /// Replaces `block` by the next at most `maxPoints` points; false at the end of the part.
+  /// Throws Error when the file is damaged or ends early; what was returned before stays valid.
+  virtual bool read(PointBlock& block, std::size_t maxPoints) = 0;
+};
+
+/// One scan. Constructing it reads headers only (text and PLY/PCD may have to look further).
+class PointSource {
+ public:
+  virtual ~PointSource() = default;
+  virtual const SourceInfo& info() const = 0;
+  /// Parts can be read at the same time by different threads. Their order and content are fixed.
+  virtual std::size_t partCount() const = 0;
+  virtual std::unique_ptr<PointReader> openPart(std::size_t part) const = 0;
+};
+
+struct SourceOptions {
+  std::string columns;              ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
+  std::uint64_t memoryBytes = std::uint64_t{2} << 30;  ///< a source that must hold its file whole refuses beyond a share of this
+};
+
+/// Every scan that `inputs` names (files, folders, `synthetic:NAME?points=1e6&seed=1`), in a fixed order
+/// (folders sorted by name, searched recursively). Throws Error for the first input that cannot be a scan.
+std::vector<std::unique_ptr<PointSource>> openSources(const std::vector<std::string>& inputs,
+                                                      const SourceOptions& options);
+
+}  // namespace strata
