@@ -105,6 +105,8 @@ class Store {
   explicit Store(const std::string& path);
   /// The same with another source for points.bin, for tests.
   Store(const std::string& path, std::unique_ptr<ByteSource> points);
+  /// From parts that are in memory already; nothing is checked.
+  Store(StoreInfo info, Hierarchy hierarchy, std::unique_ptr<ByteSource> points);
 
   const std::string& path() const { return path_; }
   const StoreInfo& info() const { return info_; }
