@@ -1,0 +1,278 @@
+#include <fcntl.h>
+#include <malloc.h>
+#include <sys/file.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "converter/chunk_builder.h"
+#include "converter/distribute.h"
+#include "converter/merge.h"
+#include "converter/node_sink.h"
+#include "converter/options.h"
+#include "converter/survey.h"
+#include "core/error.h"
+#include "core/log.h"
+#include "io/store_files.h"
+
+namespace strata {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Chunks that are built at the same time share the memory cap; the number is fixed so that the chunks, and with
+/// them the store's bytes, do not depend on the number of threads.
+constexpr int kChunksAtOnce = 4;
+/// Memory that building a chunk takes: the packed points twice, keys and indices twice, and the payloads.
+std::uint64_t chunkPointLimit(std::uint64_t memoryBytes, const PackedFormat& format) {
+  constexpr std::uint64_t kProgramBytes = std::uint64_t{160} << 20;
+  const std::uint64_t perPoint = 2 * format.stride() + 2 * 12 + 16;
+  return (memoryBytes - kProgramBytes) / 2 / kChunksAtOnce / perPoint;
+}
+
+/// The folder that the store is built in, beside its final place. Removed unless it becomes the store.
+class BuildFolder {
+ public:
+  explicit BuildFolder(const std::string& output) : output_(output), path_(output + ".building") {
+    std::error_code failure;
+    fs::create_directories(path_, failure);
+    if (failure) throw Error(path_, "creating: " + failure.message());
+    lock_ = ::open((path_ + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ < 0) throw posixError(path_, "creating", errno);
+    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(lock_);
+      throw Error(path_, "another conversion is writing this store");
+    }
+  }
+  ~BuildFolder() {
+    std::error_code ignored;
+    if (!published_) fs::remove_all(path_, ignored);
+    ::close(lock_);
+  }
+  BuildFolder(const BuildFolder&) = delete;
+  BuildFolder& operator=(const BuildFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  /// Gives the folder its final name; an older store there is replaced.
+  void publish() {
+    std::error_code failure;
+    fs::remove(path_ + "/lock", failure);
+    syncFolder(path_);
+    const std::string replaced = output_ + ".replaced";
+    fs::remove_all(replaced, failure);
+    if (fs::exists(output_)) {
+      fs::rename(output_, replaced, failure);
+      if (failure) throw Error(output_, "replacing: " + failure.message());
+    }
+    fs::rename(path_, output_, failure);
+    if (failure) throw Error(output_, "renaming: " + failure.message());
+    published_ = true;
+    const fs::path parent = fs::absolute(output_).parent_path();
+    syncFolder(parent.string());
+    fs::remove_all(replaced, failure);
+  }
+
+ private:
+  const std::string output_;
+  const std::string path_;
+  int lock_ = -1;
+  bool published_ = false;
+};
+
+class StageClock {
+ public:
+  explicit StageClock(ConvertReport& report) : report_(report) {}
+  void end(const char* stage) {
+    const auto now = std::chrono::steady_clock::now();
+    report_.stages.push_back({stage, std::chrono::duration<double>(now - begin_).count()});
+    begin_ = now;
+  }
+
+ private:
+  ConvertReport& report_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+using Sources = std::vector<std::unique_ptr<PointSource>>;
+
+PackedFormat packedFormat(const Survey& frame) { return {frame.cubeBits > 32, frame.layout.stride()}; }
+
+/// Reads the inputs into buckets. Where headers cannot be believed their points are read once more for their extent.
+Distribution readInputs(const Sources& sources, const ConvertOptions& options, Survey& frame, Spill& spill,
+                        const ConvertControl& control) {
+  std::vector<std::optional<MeasuredSource>> measured(sources.size());
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (!headerBoundsUsable(sources[i]->info()) && sources[i]->info().pointCount > 0)
+      measured[i] = measureSource(*sources[i], options.threads, control);
+    else if (sources[i]->info().pointCount == 0)
+      measured[i] = MeasuredSource{};
+  for (int attempt = 0;; ++attempt) {
+    frame = survey(sources, measured);
+    const PackedFormat format = packedFormat(frame);
+    Distribution all = distribute(sources, frame, format, chunkPointLimit(options.memoryBytes, format), options, spill,
+                                  control);
+    const double extent = glm::max(all.bounds.size().x, glm::max(all.bounds.size().y, all.bounds.size().z));
+    const bool farTooLarge = all.points > 0 && extent + 1.0 <= std::ldexp(1.0, frame.cubeBits - 2);
+    if (attempt > 0 || (!all.outsideCube && !farTooLarge)) return all;
+    for (std::size_t i = 0; i < sources.size(); ++i) measured[i] = measureSource(*sources[i], options.threads, control);
+  }
+}
+
+/// Damage that a reader did not notice itself shows as a count that is too low.
+void checkCounts(const Sources& sources, const ConvertOptions& options, Distribution& all) {
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const SourceInfo& info = sources[s]->info();
+    const std::uint64_t read = all.sourcePoints[s] + all.sourceSkipped[s];
+    if (read >= info.pointCount) continue;
+    if (!options.source.skipDamaged)
+      throw Error(info.path, "the file ends early, found " + std::to_string(read) + " points (expected " +
+                                 std::to_string(info.pointCount) + "); --skip-damaged converts what is there");
+    all.sourceSkipped[s] += info.pointCount - read;
+  }
+  if (all.points == 0) throw Error(sources.front()->info().path, "has no point with finite coordinates");
+}
+
+StoreInfo storeInfo(const Sources& sources, const ConvertOptions& options, const Survey& frame,
+                    const Distribution& all) {
+  StoreInfo info;
+  info.program = std::string("strata ") + STRATA_VERSION;
+  info.points = all.points;
+  info.bounds.min = frame.grid.offset + frame.grid.scale * all.bounds.min;
+  info.bounds.max = frame.grid.offset + frame.grid.scale * all.bounds.max;
+  info.grid = frame.grid;
+  info.cubeBits = frame.cubeBits;
+  info.crs = frame.crs;
+  info.layout = frame.layout;
+  info.ranges = all.ranges;
+  info.nodePoints = options.nodePoints;
+  info.sampling = "grid";
+  info.las = frame.las;
+  if (const int rgb = frame.layout.find(attribute::kRgb); rgb >= 0)
+    info.colourShift = all.ranges[static_cast<std::size_t>(rgb)].max > 255.0 ? 8 : 0;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const SourceInfo& source = sources[s]->info();
+    info.sources.push_back({source.path, source.format, all.sourcePoints[s], all.sourceSkipped[s]});
+    info.skipped += all.sourceSkipped[s];
+  }
+  return info;
+}
+
+/// Builds all chunks, several at a time, and writes them in order.
+std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& buckets, const ConvertOptions& options,
+                                  Spill& spill, NodeSink& sink, const ConvertControl& control) {
+  struct Work {
+    NodeKey cell;
+    std::vector<std::byte> points;
+    BuiltChunk built;
+    std::uint64_t count = 0;
+  };
+  std::vector<ChunkTop> tops;
+  std::size_t next = 0;
+  std::uint64_t done = 0;
+  tbb::task_arena arena(options.threads);
+  arena.execute([&] {
+    tbb::parallel_pipeline(
+        static_cast<std::size_t>(std::min(options.threads, kChunksAtOnce)),
+        tbb::make_filter<void, std::shared_ptr<Work>>(
+            tbb::filter_mode::serial_in_order,
+            [&](tbb::flow_control& flow) -> std::shared_ptr<Work> {
+              if (next == buckets.size()) {
+                flow.stop();
+                return nullptr;
+              }
+              control.checkStop();
+              Bucket& bucket = buckets[next++];
+              auto work = std::make_shared<Work>();
+              work->cell = bucket.cell;
+              work->count = bucket.points;
+              work->points.reserve(bucket.points * frame.format.stride());
+              for (Bucket::Block& block : bucket.blocks) spill.take(block.handle, work->points);
+              bucket.blocks = {};
+              return work;
+            }) &
+            tbb::make_filter<std::shared_ptr<Work>, std::shared_ptr<Work>>(
+                tbb::filter_mode::parallel,
+                [&](std::shared_ptr<Work> work) {
+                  work->built = buildChunk(frame, work->cell, std::move(work->points));
+                  return work;
+                }) &
+            tbb::make_filter<std::shared_ptr<Work>, void>(
+                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Work>& work) {
+                  sink.write(std::move(work->built.nodes));
+                  tops.push_back({work->cell, spill.put(work->built.topPoints), std::move(work->built.topChildren)});
+                  control.progress({"building", done += work->count, frame.info.points});
+                }));
+  });
+  return tops;
+}
+
+void checkOptions(const ConvertOptions& options) {
+  if (fs::exists(options.output) && !options.force)
+    throw Error(options.output, "exists already; --force replaces it");
+  if (options.force && fs::exists(options.output) && !fs::exists(options.output + "/" + kInfoFile))
+    throw Error(options.output, "is not a store, so --force does not replace it");
+  const fs::path parent = fs::absolute(options.output).parent_path();
+  if (!fs::is_directory(parent)) throw Error(parent.string(), "is no folder that the store could be made in");
+  if (!options.tempFolder.empty() && !fs::is_directory(options.tempFolder))
+    throw Error(options.tempFolder, "is no folder for temporary points");
+}
+
+}  // namespace
+
+ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control) {
+  // Freed blocks of points go back to the system at once: the cap is on resident memory.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  ConvertOptions options = asked;
+  while (options.output.size() > 1 && options.output.back() == '/') options.output.pop_back();
+  if (options.threads <= 0) options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.source.memoryBytes = options.memoryBytes;
+  checkOptions(options);
+
+  ConvertReport report;
+  StageClock clock(report);
+  const Sources sources = openSources(options.inputs, options.source);
+  for (const auto& source : sources) {
+    report.inputBytes += source->info().fileBytes;
+    if (source->info().pointCount == 0 && sources.size() == 1) throw Error(source->info().path, "has no points");
+    if (source->info().pointCount == 0) logWarning(source->info().path + ": has no points");
+  }
+  clock.end("survey");
+
+  BuildFolder folder(options.output);
+  Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);
+  Survey surveyed;
+  Distribution all = readInputs(sources, options, surveyed, spill, control);
+  checkCounts(sources, options, all);
+  clock.end("distribute");
+
+  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed)};
+  NodeSink sink(folder.path());
+  std::vector<ChunkTop> tops = buildChunks(frame, all.buckets, options, spill, sink, control);
+  clock.end("build");
+  mergeChunks(frame, std::move(tops), spill, sink, control);
+  clock.end("merge");
+
+  const Hierarchy hierarchy = sink.finish();
+  StoreInfo info = frame.info;
+  info.nodes = hierarchy.nodes.size();
+  info.levels = NodeKey{hierarchy.nodes.back().key}.level() + 1;
+  writeStoreFiles(folder.path(), info, hierarchy, sink.bytes());
+  folder.publish();
+  clock.end("write");
+
+  report.points = info.points;
+  report.nodes = info.nodes;
+  report.skipped = info.skipped;
+  report.tempPeakBytes = spill.peakFileBytes();
+  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
+    report.outputBytes += fs::file_size(options.output + "/" + file);
+  return report;
+}
+
+}  // namespace strata

@@ -1,0 +1,23 @@
+#pragma once
+#include <vector>
+
+#include "converter/node_sink.h"
+#include "converter/options.h"
+#include "converter/spill.h"
+
+namespace strata {
+
+/// The top node of a finished chunk, waiting for its ancestors.
+struct ChunkTop {
+  NodeKey key;
+  Spill::Handle points;                  ///< packed, in Morton order
+  std::vector<SubtreeShape> children;
+};
+
+/// Builds the nodes above the chunks, bottom up (design section 5, stage 4): each takes an even share of its
+/// children's own points by the same rule that chunks use; what remains of a child is then final and written.
+/// `tops` are disjoint, in Morton order. In memory at any time: the own points of at most eight nodes a level.
+void mergeChunks(const BuildFrame& frame, std::vector<ChunkTop> tops, Spill& spill, NodeSink& sink,
+                 const ConvertControl& control);
+
+}  // namespace strata

@@ -1,0 +1,56 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "io/point_source.h"
+
+namespace strata {
+
+struct ConvertOptions {
+  std::vector<std::string> inputs;
+  std::string output;                ///< NAME.strata
+  std::string tempFolder;            ///< for spilled points; empty = beside the output
+  std::uint64_t memoryBytes = std::uint64_t{2} << 30;
+  int threads = 0;                   ///< 0 = all cores
+  std::uint32_t nodePoints = 65536;
+  bool force = false;                ///< replace an existing store
+  SourceOptions source;
+};
+
+inline constexpr std::uint64_t kLeastMemoryBytes = std::uint64_t{512} << 20;
+inline constexpr std::uint32_t kLeastNodePoints = 1024;
+inline constexpr std::uint32_t kMostNodePoints = 1u << 20;
+
+/// How far a stage is; called from any thread, a few times a second at most.
+struct Progress {
+  const char* stage = "";
+  std::uint64_t done = 0, total = 0;   ///< points
+};
+
+/// What a conversion reports (design section 10).
+struct ConvertReport {
+  std::uint64_t points = 0, nodes = 0, skipped = 0;
+  std::uint64_t inputBytes = 0, outputBytes = 0, tempPeakBytes = 0;
+  struct Stage {
+    std::string name;
+    double seconds = 0.0;
+  };
+  std::vector<Stage> stages;
+};
+
+/// What the stages share besides the options: progress and the wish to stop.
+struct ConvertControl {
+  std::function<void(const Progress&)> progress = [](const Progress&) {};
+  const std::atomic<bool>* stop = nullptr;   ///< set from a signal handler
+  /// Throws Error("stopped") when the user asked to.
+  void checkStop() const;
+};
+
+/// Converts the inputs to a store. Nothing carries the final name before it is complete and durable; whatever was
+/// begun is removed when an Error is thrown. Same inputs and options give the same bytes for any number of threads.
+ConvertReport convert(const ConvertOptions& options, const ConvertControl& control);
+
+}  // namespace strata

@@ -1,0 +1,122 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+
+#include "core/error.h"
+#include "core/program.h"
+#include "io/node_codec.h"
+#include "io/scan_writer.h"
+#include "io/store.h"
+
+namespace strata {
+namespace {
+
+/// Which points are wanted.
+struct Filter {
+  std::optional<Box> box;
+  int deepestLevel = NodeKey::kDeepestLevel;
+};
+
+bool mayHoldWanted(const NodeRecord& record, const StoreInfo& info, const Filter& filter) {
+  const NodeKey key{record.key};
+  if (key.level() > filter.deepestLevel) return false;
+  if (!filter.box) return true;
+  const Box cube = nodeCube(key, info.rootCube());
+  return glm::all(glm::lessThanEqual(cube.min, filter.box->max)) && glm::all(glm::greaterThanEqual(cube.max, filter.box->min));
+}
+
+NodePoints wantedPoints(const Store& store, std::uint32_t node, const Filter& filter) {
+  NodePoints all = readAll(store, node);
+  if (!filter.box) return all;
+  const StoreInfo& info = store.info();
+  const std::size_t stride = info.layout.stride();
+  NodePoints kept;
+  for (std::size_t i = 0; i < all.count(); ++i) {
+    const glm::dvec3 p = info.grid.offset + info.grid.scale * glm::dvec3(all.grid[0][i], all.grid[1][i], all.grid[2][i]);
+    if (!filter.box->contains(p)) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) kept.grid[axis].push_back(all.grid[axis][i]);
+    kept.attributes.insert(kept.attributes.end(), all.attributes.begin() + static_cast<std::ptrdiff_t>(i * stride),
+                           all.attributes.begin() + static_cast<std::ptrdiff_t>((i + 1) * stride));
+  }
+  return kept;
+}
+
+/// Count and bounds of what will be written; writers need both first. Without a box the store knows.
+std::uint64_t countWanted(const Store& store, const Filter& filter, Box& bounds) {
+  const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
+  std::uint64_t count = 0;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    if (!mayHoldWanted(nodes[i], store.info(), filter)) continue;
+    if (!filter.box) {
+      count += nodes[i].pointCount;
+      continue;
+    }
+    const NodePoints points = wantedPoints(store, i, filter);
+    count += points.count();
+  }
+  bounds = store.info().bounds;
+  if (filter.box) {
+    bounds.min = glm::max(bounds.min, filter.box->min);
+    bounds.max = glm::min(bounds.max, filter.box->max);
+  }
+  return count;
+}
+
+std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
+                                         const Box& bounds) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  if (extension == ".las" || extension == ".laz") return createLasWriter(path, info, points, bounds, extension == ".laz");
+  return createPlyWriter(path, info, points);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Writes the points of a Strata store as LAS, LAZ or PLY.", "strata-export");
+  std::string path, output;
+  std::vector<double> box;
+  Filter filter;
+  bool force = false;
+  app.add_option("STORE", path, "NAME.strata")->required();
+  app.add_option("-o,--output", output, "OUT.las, OUT.laz or OUT.ply")->required();
+  app.add_option("--box", box, "only points in x0 y0 z0 x1 y1 z1")->expected(6);
+  app.add_option("--level", filter.deepestLevel, "only nodes down to this level; 0 is the root")
+      ->check(CLI::Range(0, NodeKey::kDeepestLevel));
+  app.add_flag("--force", force, "replace an existing file");
+  app.set_version_flag("--version", STRATA_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& problem) {
+    if (problem.get_exit_code() == 0) return app.exit(problem);
+    throw UsageError(problem.what());
+  }
+  const std::string extension = std::filesystem::path(output).extension().string();
+  if (extension != ".las" && extension != ".laz" && extension != ".ply")
+    throw UsageError(output, "unknown format, found '" + extension + "' (expected .las, .laz or .ply)");
+  if (!box.empty()) {
+    filter.box = Box{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+    if (filter.box->empty()) throw UsageError("--box", "the first corner is not below the second");
+  }
+  if (std::filesystem::exists(output) && !force) throw Error(output, "exists already; --force replaces it");
+
+  const Store store(path);
+  Box bounds;
+  const std::uint64_t count = countWanted(store, filter, bounds);
+  const std::unique_ptr<ScanWriter> writer = createWriter(output, store.info(), count, bounds);
+  const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    if (mayHoldWanted(nodes[i], store.info(), filter)) writer->write(wantedPoints(store, i, filter));
+  writer->finish();
+  std::printf("%s: %s points\n", output.c_str(), grouped(count).c_str());
+  return 0;
+}
+
+}  // namespace
+}  // namespace strata
+
+int main(int argc, char** argv) {
+  try {
+    return strata::run(argc, argv);
+  } catch (const std::exception& failure) {
+    return strata::reportFailure(failure);
+  }
+}

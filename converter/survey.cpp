@@ -1,0 +1,214 @@
+#include "converter/survey.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/gtx/component_wise.hpp>
+#include <map>
+#include <mutex>
+
+#include "core/error.h"
+
+namespace strata {
+namespace {
+
+constexpr int kMostCubeBits = 52;          // integers that a double holds exactly
+constexpr std::size_t kMeasureBlock = 65536;
+constexpr double kGridTolerance = 1e-4;    // of a step: what decimal scale factors lose in binary
+
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool isWhole(double value) { return std::abs(value - std::round(value)) <= kGridTolerance; }
+
+/// The steps of one axis over all sources.
+struct AxisGrid {
+  double step = 0.0;
+  double anchor = 0.0;   ///< a coordinate on the grid
+  bool exact = true;
+};
+
+/// A step that divides every source's step and the distances between their origins, if a decimal one does.
+AxisGrid commonGrid(const std::vector<std::unique_ptr<PointSource>>& sources, const std::vector<glm::dvec3>& steps,
+                    int axis) {
+  AxisGrid grid;
+  grid.anchor = sources.front()->info().origin[axis];
+  double finest = steps.front()[axis];
+  for (const glm::dvec3& s : steps) finest = std::min(finest, s[axis]);
+  const auto fits = [&](double step) {
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      if (!isWhole(steps[i][axis] / step) || !isWhole((sources[i]->info().origin[axis] - grid.anchor) / step))
+        return false;
+    return true;
+  };
+  for (const double divisor : {1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 1000.0}) {
+    grid.step = finest / divisor;
+    if (fits(grid.step)) return grid;
+  }
+  grid.step = finest / 16.0;   // close enough to round back to each source's own integers
+  grid.exact = false;
+  return grid;
+}
+
+/// Makes the steps of the three axes alike by dividing the coarser ones by whole numbers, so that node cubes are
+/// nearly cubes in metres as well.
+void evenOut(AxisGrid (&axes)[3]) {
+  const double finest = std::min({axes[0].step, axes[1].step, axes[2].step});
+  for (AxisGrid& axis : axes) axis.step /= std::max(1.0, std::round(axis.step / finest));
+}
+
+/// The step of a source on this axis: its own, or for floats what their typical magnitude can resolve.
+glm::dvec3 sourceStep(const SourceInfo& info, const std::optional<MeasuredSource>& measured) {
+  if (info.gridExact) return info.step;
+  glm::dvec3 step = info.step;
+  if (measured && measured->typicalMagnitude > 0.0) {
+    const double ulp = measured->typicalMagnitude * std::ldexp(1.0, -23);
+    const double typical = std::pow(10.0, std::floor(std::log10(ulp * 0.5)));
+    for (int axis = 0; axis < 3; ++axis) step[axis] = step[axis] > 0.0 ? std::min(step[axis], typical) : typical;
+  }
+  const double extent = measured ? glm::compMax(measured->bounds.size()) : glm::compMax(info.bounds.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(step[axis] > 0.0)) step[axis] = extent > 0.0 ? std::pow(10.0, std::floor(std::log10(extent * 1e-9))) : 1e-6;
+    while (extent / step[axis] > std::ldexp(1.0, kMostCubeBits - 5)) step[axis] *= 10.0;
+  }
+  return step;
+}
+
+Box sourceBounds(const PointSource& source, const std::optional<MeasuredSource>& measured) {
+  if (!measured) return source.info().bounds;
+  Box box = measured->bounds;
+  if (!box.empty()) {
+    box.min += source.info().origin;
+    box.max += source.info().origin;
+  }
+  return box;
+}
+
+PointLayout unitedLayout(const std::vector<std::unique_ptr<PointSource>>& sources) {
+  std::vector<Attribute> united;
+  for (const auto& source : sources)
+    for (const Attribute& a : source->info().layout.attributes()) {
+      const auto same = std::find_if(united.begin(), united.end(), [&](const Attribute& u) { return u.name == a.name; });
+      if (same == united.end())
+        united.push_back(a);
+      else if (same->type != a.type || same->components != a.components)
+        throw Error(source->info().path, "attribute '" + a.name + "' has another type than in the files before, found " +
+                                             std::string(scalarName(a.type)) + " x " + std::to_string(a.components) +
+                                             " (expected " + std::string(scalarName(same->type)) + " x " +
+                                             std::to_string(same->components) + ")");
+    }
+  return PointLayout(std::move(united));
+}
+
+SourceMapping mapLayout(const PointLayout& from, const PointLayout& to) {
+  SourceMapping mapping;
+  mapping.sameLayout = from.stride() == to.stride();
+  for (std::size_t i = 0; i < from.attributes().size(); ++i) {
+    const int target = to.find(from.attributes()[i].name);
+    const std::size_t offset = to.offset(static_cast<std::size_t>(target));
+    mapping.columns.push_back({from.offset(i), offset, from.attributes()[i].bytes()});
+    mapping.sameLayout = mapping.sameLayout && from.offset(i) == offset;
+  }
+  return mapping;
+}
+
+void placeCube(const Box& bounds, const AxisGrid (&axes)[3], Survey& out) {
+  std::uint64_t steps = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    const AxisGrid& grid = axes[axis];
+    const double first = std::floor((bounds.min[axis] - grid.anchor) / grid.step + kGridTolerance);
+    const double last = std::ceil((bounds.max[axis] - grid.anchor) / grid.step - kGridTolerance);
+    if (last - first >= std::ldexp(1.0, kMostCubeBits))
+      throw Error("the scan spans " + std::to_string(bounds.size()[axis]) + " m on a grid of " +
+                  std::to_string(grid.step) + " m: more than 2^52 steps");
+    out.grid.scale[axis] = grid.step;
+    out.grid.offset[axis] = grid.anchor + first * grid.step;
+    out.grid.exact = out.grid.exact && grid.exact;
+    steps = std::max(steps, static_cast<std::uint64_t>(last - first) + 1);
+  }
+  out.cubeBits = static_cast<int>(std::bit_width(steps - 1));
+}
+
+}  // namespace
+
+void ConvertControl::checkStop() const {
+  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Error("stopped before the store was complete");
+}
+
+bool headerBoundsUsable(const SourceInfo& info) {
+  if (!info.gridExact || info.bounds.empty() || !finite(info.bounds.min) || !finite(info.bounds.max)) return false;
+  if (!info.las) return true;
+  for (int axis = 0; axis < 3; ++axis)   // a LAS coordinate is a 32-bit integer
+    for (const double edge : {info.bounds.min[axis], info.bounds.max[axis]})
+      if (std::abs((edge - info.origin[axis]) / info.step[axis]) > 2147483649.0) return false;
+  return true;
+}
+
+MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control) {
+  MeasuredSource result;
+  std::map<int, std::uint64_t> magnitudes;
+  std::mutex mutex;
+  tbb::task_arena arena(threads);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, source.partCount(), [&](std::size_t part) {
+      PointBlock block;
+      Box bounds;
+      std::map<int, std::uint64_t> exponents;
+      const auto reader = source.openPart(part);
+      while (reader->read(block, kMeasureBlock)) {
+        control.checkStop();
+        for (const glm::dvec3& p : block.positions) {
+          if (!finite(p)) continue;
+          bounds.add(p);
+          ++exponents[std::ilogb(std::max(glm::compMax(glm::abs(p)), 1e-300))];
+        }
+      }
+      const std::lock_guard lock(mutex);
+      result.bounds.add(bounds);
+      for (const auto& [exponent, count] : exponents) magnitudes[exponent] += count;
+    });
+  });
+  std::uint64_t total = 0, before = 0;
+  for (const auto& [exponent, count] : magnitudes) total += count;
+  for (const auto& [exponent, count] : magnitudes) {
+    before += count;
+    if (2 * before >= total) {
+      result.typicalMagnitude = std::ldexp(1.0, exponent);
+      break;
+    }
+  }
+  return result;
+}
+
+Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
+              const std::vector<std::optional<MeasuredSource>>& measured) {
+  Survey out;
+  Box bounds;
+  std::vector<glm::dvec3> steps;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const SourceInfo& info = sources[i]->info();
+    out.claimedPoints += info.pointCount;
+    const Box box = sourceBounds(*sources[i], measured[i]);
+    if (!box.empty()) bounds.add(box);
+    steps.push_back(sourceStep(info, measured[i]));
+    out.grid.exact = out.grid.exact && info.gridExact;
+    if (out.crs.empty()) out.crs = info.crs;
+    if (!out.las && info.las) out.las = info.las;
+  }
+  if (bounds.empty()) throw Error(sources.front()->info().path, "has no point with finite coordinates");
+  AxisGrid axes[3];
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = commonGrid(sources, steps, axis);
+  evenOut(axes);
+  placeCube(bounds, axes, out);
+  out.layout = unitedLayout(sources);
+  for (const auto& source : sources) {
+    SourceMapping mapping = mapLayout(source->info().layout, out.layout);
+    mapping.originDelta = source->info().origin - out.grid.offset;
+    out.mappings.push_back(std::move(mapping));
+  }
+  return out;
+}
+
+}  // namespace strata

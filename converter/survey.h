@@ -1,0 +1,50 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "converter/options.h"
+#include "io/point_source.h"
+#include "io/store.h"
+
+namespace strata {
+
+/// How one source's points become points of the store.
+struct SourceMapping {
+  struct Column {
+    std::size_t from, to, bytes;   ///< offsets in the source's and the store's record
+  };
+  std::vector<Column> columns;
+  bool sameLayout = false;         ///< records can be copied whole
+  glm::dvec3 originDelta{0.0};     ///< source origin - store grid offset
+};
+
+/// The frame of the conversion, known before points are read (design section 5, stage 1).
+struct Survey {
+  StoreGrid grid;
+  int cubeBits = 0;
+  PointLayout layout;
+  std::string crs;
+  std::optional<LasMeta> las;
+  std::uint64_t claimedPoints = 0;
+  std::vector<SourceMapping> mappings;   ///< one a source
+};
+
+/// Bounds and typical magnitude of a source whose header cannot tell.
+struct MeasuredSource {
+  Box bounds;                  ///< of finite points, relative to the source's origin
+  double typicalMagnitude = 0; ///< median over the points of the largest |coordinate|, as a power of two
+};
+
+/// Reads the points of a source once for their extent; in parallel over its parts.
+MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control);
+
+/// Decides grid, cube and layout. `measured` has an entry for each source, used where present (else the header's
+/// bounds are believed). Throws Error for what cannot be converted.
+Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
+              const std::vector<std::optional<MeasuredSource>>& measured);
+
+/// True when the header's bounds of the source can be used as they are.
+bool headerBoundsUsable(const SourceInfo& info);
+
+}  // namespace strata
