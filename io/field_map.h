@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/box.h"
@@ -110,6 +112,9 @@ struct IntensityScale {
 };
 IntensityScale intensityScale(const FieldRange& range);
 
+/// The type that a field of this name needs to become an attribute that Strata knows; of rgb and normals too.
+std::optional<ScalarType> knownFieldType(std::string_view name);
+
 /// The three fields that hold the position, by index, -1 where one is missing.
 struct AxisFields {
   int index[3] = {-1, -1, -1};
@@ -118,8 +123,9 @@ AxisFields findAxes(std::span<const Field> fields);
 
 /// A power of ten that is at most half a unit in the last place of float32 at `largest`; 0 for 0.
 double float32Step(double largest);
-/// A power of ten that is at most 1e-9 of `largest`, and no finer than 1e-9; 0 for 0.
-double relativeStep(double largest);
+/// For doubles whose last digit says nothing: a power of ten that is at most 1e-9 of the longest side of the points'
+/// box (of the largest coordinate where that is 0), and no finer than 1e-9. 0 where all is 0.
+double float64Step(const Box& bounds);
 
 /// Gives axes that have no step (all coordinates 0) the coarsest of the others, 0.001 where none has one.
 glm::dvec3 fillSteps(glm::dvec3 step);

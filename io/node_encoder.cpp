@@ -47,7 +47,7 @@ class PayloadWriter {
  private:
   /// Position planes (elementBytes 0) are never constant: their bits run on.
   static bool isConstant(std::span<const std::byte> raw, std::size_t elementBytes) {
-    if (elementBytes == 0) return false;
+    if (elementBytes == 0 || raw.empty()) return false;
     const std::size_t count = raw.size() / elementBytes;
     for (std::size_t b = 0; b < elementBytes; ++b) {
       const std::byte* column = raw.data() + b * count;
@@ -176,17 +176,17 @@ EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info) {
 
   const PayloadHead head{static_cast<std::uint32_t>(points.count()), static_cast<std::uint16_t>(batches.size()),
                          static_cast<std::uint16_t>(writer.planes().size())};
+  const std::size_t batchBytes = batches.size() * sizeof(PayloadBatch);
+  const std::size_t planeBytes = writer.planes().size() * sizeof(PayloadPlane);
   EncodedNode node;
-  const auto append = [&node](const void* data, std::size_t bytes) {
-    const std::byte* from = static_cast<const std::byte*>(data);
-    node.payload.insert(node.payload.end(), from, from + bytes);
-  };
-  append(&head, sizeof head);
-  append(batches.data(), batches.size() * sizeof(PayloadBatch));
-  append(writer.planes().data(), writer.planes().size() * sizeof(PayloadPlane));
-  node.headBytes = static_cast<std::uint32_t>(node.payload.size());
-  node.headChecksum = XXH3_64bits(node.payload.data(), node.headBytes);
-  append(writer.body().data(), writer.body().size());
+  node.headBytes = static_cast<std::uint32_t>(sizeof head + batchBytes + planeBytes);
+  node.payload.resize(node.headBytes + writer.body().size());
+  std::byte* to = node.payload.data();
+  std::memcpy(to, &head, sizeof head);
+  if (batchBytes > 0) std::memcpy(to + sizeof head, batches.data(), batchBytes);
+  std::memcpy(to + sizeof head + batchBytes, writer.planes().data(), planeBytes);
+  node.headChecksum = XXH3_64bits(to, node.headBytes);
+  if (!writer.body().empty()) std::memcpy(to + node.headBytes, writer.body().data(), writer.body().size());
   for (int p = 0; p < 3; ++p) node.drawBytes[p] = node.headBytes + drawEnd[p];
   return node;
 }

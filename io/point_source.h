@@ -82,6 +82,7 @@ class PointSource {
 struct SourceOptions {
   std::string columns;              ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
   std::uint64_t memoryBytes = std::uint64_t{2} << 30;  ///< a source that must hold its file whole refuses beyond a share of this
+  bool skipDamaged = false;         ///< read what is sound of a damaged file; what is missing counts as skipped
 };
 
 /// Every scan that `inputs` names (files, folders, `synthetic:NAME?points=1e6&seed=1`), in a fixed order

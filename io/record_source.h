@@ -18,6 +18,7 @@ struct RecordFile {
   std::uint64_t pointCount = 0;
   std::size_t recordBytes = 0;
   bool bigEndian = false;
+  bool skipDamaged = false;      ///< a file that ends early gives the whole records it has
   std::vector<Field> fields;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -38,7 +39,7 @@ class LineReader {
 };
 
 /// Splits at runs of blanks and at commas and semicolons with blanks around; `tokens` is replaced. Quotes around a
-/// token are taken off. Empty tokens stand between neighbouring commas.
+/// token are taken off; blanks and separators within them belong to it. Empty tokens stand between neighbouring commas.
 void splitColumns(std::string_view line, std::vector<std::string_view>& tokens);
 
 /// A token as a number; false where it is none. A leading + is allowed, as are nan and inf.
@@ -48,7 +49,7 @@ bool parseInteger(std::string_view token, std::int64_t& value);
 /// Writes a number as a value of `type`; false where it does not fit. Integers may be written as 3.0.
 bool storeNumber(std::string_view token, ScalarType type, std::byte* out);
 
-/// True for lines that carry no point: blank, or comments and count lines where the table has such.
+/// Blank lines and, where the table has such, comments and count lines carry no point.
 enum class LineKind : std::uint8_t { point, blank, countLine };
 LineKind lineKind(std::string_view line, const TextTable& table);
 
@@ -56,5 +57,26 @@ LineKind lineKind(std::string_view line, const TextTable& table);
 /// the line has too few.
 bool pickColumns(const std::vector<std::string_view>& tokens, const TextTable& table,
                  std::vector<std::string_view>& picked);
+
+/// Turns lines into records. Keeps its memory from line to line.
+class LineParser {
+ public:
+  explicit LineParser(const TextTable& table) : table_(table), record_(table.recordBytes) {}
+
+  /// False where the line cannot be read; fault() then says why.
+  bool parse(std::string_view line);
+  const std::vector<std::byte>& record() const { return record_; }
+  /// Tokens of the table's columns of the line parsed last.
+  const std::vector<std::string_view>& columns() const { return picked_; }
+  /// `found 2 columns (expected 3)`.
+  std::string fault() const;
+
+ private:
+  const TextTable& table_;
+  std::vector<std::byte> record_;
+  std::vector<std::string_view> tokens_;
+  std::vector<std::string_view> picked_;
+  int badColumn_ = -1;   ///< of `picked_`; -1 = too few columns
+};
 
 }  // namespace strata

@@ -69,13 +69,10 @@ struct TextSurvey {
 /// A count line that promises another number of points than follow is an error too.
 TextSurvey surveyText(const ByteSource& bytes, const TextTable& table);
 
-/// Reads the points of one part. The references must outlive the reader.
-std::unique_ptr<PointReader> openTextPart(const ByteSource& bytes, const TextTable& table, const FieldMap& map,
-                                          const TextPart& part);
-
-/// A source over a table whose fields are set. Takes over the survey made of it.
+/// A source over a table whose fields are set. Takes over the survey made of it. `claimedPoints` is what a header says
+/// (0 = it says nothing); what is missing of them stays in SourceInfo::pointCount, as do damaged lines.
 std::unique_ptr<PointSource> openTextTable(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey,
-                                           std::string format);
+                                           std::uint64_t claimedPoints, std::string format);
 
 /// Gives fields their offsets, packed in order, and the table its recordBytes.
 void packFields(TextTable& table);

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/point_layout.h"
+
+namespace strata {
+
+/// One property of an element; a list has a count of type `countType` before its items.
+struct PlyProperty {
+  std::string name;
+  ScalarType type = ScalarType::f32;
+  std::optional<ScalarType> countType;
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+
+  bool hasLists() const;
+  /// Bytes of one element in a binary file without lists.
+  std::size_t bytes() const;
+};
+
+enum class PlyEncoding : std::uint8_t { ascii, littleEndian, bigEndian };
+
+/// The header of a PLY file (Turk 1994). Types may be called as there, or int8 to float64; `bool` is a byte.
+struct PlyHeader {
+  PlyEncoding encoding = PlyEncoding::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t vertex = 0;         ///< index of the element that has the points
+  std::size_t headerBytes = 0;    ///< with the line end after end_header
+  std::uint64_t headerLines = 0;
+};
+
+/// Reads the header at the start of `head`. Throws Error naming `file`.
+PlyHeader parsePlyHeader(const std::string& file, std::string_view head);
+
+}  // namespace strata

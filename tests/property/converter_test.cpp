@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "converter/options.h"
+#include "core/error.h"
+#include "io/node_codec.h"
+#include "io/store_files.h"
+#include "io/verify.h"
+#include "tests/support/test_data.h"
+
+namespace strata {
+namespace {
+
+namespace fs = std::filesystem;
+
+ConvertReport convertTo(const fs::path& store, const std::vector<std::string>& inputs, int threads = 2,
+                        std::uint32_t nodePoints = 4096) {
+  ConvertOptions options;
+  options.inputs = inputs;
+  options.output = store.string();
+  options.threads = threads;
+  options.nodePoints = nodePoints;
+  options.memoryBytes = kLeastMemoryBytes;
+  return convert(options, ConvertControl{});
+}
+
+std::string bytesOf(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// Every point as grid integers and attribute bytes, sorted.
+std::vector<std::string> sortedPoints(const Store& store) {
+  std::vector<std::string> all;
+  const std::size_t stride = store.info().layout.stride();
+  for (std::uint32_t n = 0; n < store.hierarchy().nodes.size(); ++n) {
+    const NodePoints points = readAll(store, n);
+    for (std::size_t i = 0; i < points.count(); ++i) {
+      std::string one(24 + stride, '\0');
+      for (std::size_t axis = 0; axis < 3; ++axis) std::memcpy(one.data() + 8 * axis, &points.grid[axis][i], 8);
+      std::memcpy(one.data() + 24, points.attributes.data() + i * stride, stride);
+      all.push_back(std::move(one));
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The same, straight from the source.
+std::vector<std::string> sortedSourcePoints(const std::string& input, const StoreInfo& info) {
+  std::vector<std::string> all;
+  const std::size_t stride = info.layout.stride();
+  for (const auto& source : openSources({input}, {}))
+    for (std::size_t part = 0; part < source->partCount(); ++part) {
+      const auto reader = source->openPart(part);
+      PointBlock block;
+      while (reader->read(block, 10000))
+        for (std::size_t i = 0; i < block.count(); ++i) {
+          std::string one(24 + stride, '\0');
+          const glm::dvec3 world = block.positions[i] + (source->info().origin - info.grid.offset);
+          for (int axis = 0; axis < 3; ++axis) {
+            const std::int64_t grid = std::llround(world[axis] / info.grid.scale[axis]);
+            std::memcpy(one.data() + 8 * axis, &grid, 8);
+          }
+          std::memcpy(one.data() + 24, block.attributes.data() + i * stride, stride);
+          all.push_back(std::move(one));
+        }
+    }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+class EveryShape : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryShape, KeepsEverySourcePointExactlyOnceInASoundStore) {
+  const test::TempFolder folder;
+  const std::string input = std::string("synthetic:") + GetParam() + "?points=150000&seed=5";
+  convertTo(folder / "a.strata", {input});
+  const Store store((folder / "a.strata").string());
+  const VerifyReport report = verifyStore(store);
+  EXPECT_TRUE(report.problems.empty()) << report.problems.front();
+  EXPECT_EQ(sortedPoints(store), sortedSourcePoints(input, store.info()));
+}
+
+TEST_P(EveryShape, GivesTheSameBytesForOneTwoAndEightThreads) {
+  const test::TempFolder folder;
+  const std::vector<std::string> inputs{std::string("synthetic:") + GetParam() + "?points=300000&seed=2"};
+  for (const int threads : {1, 2, 8}) convertTo(folder / ("t" + std::to_string(threads)), inputs, threads);
+  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile}) {
+    EXPECT_EQ(bytesOf(folder / "t1" / file), bytesOf(folder / "t2" / file)) << file;
+    EXPECT_EQ(bytesOf(folder / "t1" / file), bytesOf(folder / "t8" / file)) << file;
+  }
+}
+
+TEST_P(EveryShape, NodesHoldNoMoreThanTheirCapacityUnlessTheyCannotBeSplit) {
+  const test::TempFolder folder;
+  convertTo(folder / "a.strata", {std::string("synthetic:") + GetParam() + "?points=100000"});
+  const Store store((folder / "a.strata").string());
+  for (const NodeRecord& node : store.hierarchy().nodes)
+    EXPECT_TRUE(node.pointCount <= 4096 || node.childMask == 0) << NodeKey{node.key}.text();
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape,
+                         testing::Values("plane", "room", "city", "terrain", "stack", "sphere", "degenerate"),
+                         [](const auto& shape) { return std::string(shape.param); });
+
+TEST(Converter, ManyChunksGiveTheSamePointsAsOne) {
+  // 6 million points in 512 MiB make several chunks; the tree above them is merged.
+  const test::TempFolder folder;
+  const std::string input = "synthetic:city?points=6000000&seed=3";
+  convertTo(folder / "many.strata", {input}, 2, 65536);
+  const Store store((folder / "many.strata").string());
+  const VerifyReport report = verifyStore(store);
+  EXPECT_TRUE(report.problems.empty()) << report.problems.front();
+  EXPECT_EQ(report.points, 6000000u);
+}
+
+TEST(Converter, AnErrorLeavesNeitherStoreNorRemains) {
+  const test::TempFolder folder;
+  EXPECT_THROW(convertTo(folder / "a.strata", {(folder / "missing.las").string()}), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Converter, StopsWhenAskedAndLeavesNothing) {
+  const test::TempFolder folder;
+  ConvertOptions options;
+  options.inputs = {"synthetic:city?points=1e8"};
+  options.output = (folder / "a.strata").string();
+  std::atomic<bool> stop{true};
+  ConvertControl control;
+  control.stop = &stop;
+  EXPECT_THROW(convert(options, control), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+TEST(Converter, TwoClustersFarApartKeepTheirCoordinates) {
+  const test::TempFolder folder;
+  {
+    std::ofstream text(folder / "far.xyz");
+    for (int i = 0; i < 500; ++i) text << "0." << 100 + i << " 1.5 2.25\n10000000." << 100 + i << " 1.5 2.25\n";
+  }
+  convertTo(folder / "a.strata", {(folder / "far.xyz").string()});
+  const Store store((folder / "a.strata").string());
+  EXPECT_TRUE(store.info().grid.exact);
+  EXPECT_EQ(sortedPoints(store), sortedSourcePoints((folder / "far.xyz").string(), store.info()));
+}
+
+}  // namespace
+}  // namespace strata
