@@ -19,15 +19,18 @@ class SceneBuilder {
   Primitive& box(const glm::vec3& min, const glm::vec3& max, Material material, std::uint32_t seed = 0);
   /// Box by its foot: `size` is width, depth, height.
   Primitive& block(const glm::vec3& at, const glm::vec3& size, Material material, std::uint32_t seed = 0);
-  Primitive& roof(const glm::vec3& min, const glm::vec3& max, const glm::vec2& slope, Material material, std::uint32_t seed = 0);
-  Primitive& cone(const glm::vec3& at, float radius, float height, float taper, Material material, std::uint32_t seed = 0);
+  Primitive& roof(const glm::vec3& min, const glm::vec3& max, const glm::vec2& slope, Material material,
+                  std::uint32_t seed = 0);
+  Primitive& cone(const glm::vec3& at, float radius, float height, float taper, Material material,
+                  std::uint32_t seed = 0);
   Primitive& ball(const glm::vec3& centre, const glm::vec3& radius, Material material, std::uint32_t seed = 0);
-  Primitive& foliage(const glm::vec3& centre, const glm::vec3& radius, float meanFreePath, Material material, std::uint32_t seed);
+  Primitive& foliage(const glm::vec3& centre, const glm::vec3& radius, float meanFreePath, Material material,
+                     std::uint32_t seed);
 };
 
 /// A pitched roof over the walls' rectangle: `ridgeAlongX` for a gable; `hip` slopes on all four sides.
-void addPitchedRoof(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, float eaves, float slope, bool ridgeAlongX,
-                    bool hip, Material material, std::uint32_t seed);
+void addPitchedRoof(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, float eaves, float slope,
+                    bool ridgeAlongX, bool hip, Material material, std::uint32_t seed);
 
 // Street furniture and plants (synthetic_street.cpp).
 void addTree(SceneBuilder& b, const glm::vec3& at, float height);

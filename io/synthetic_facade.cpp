@@ -9,19 +9,23 @@ namespace {
 
 /// How openings are laid out on a wall: a grid of `pitch` x `storey` metres with one opening a cell.
 struct FacadeStyle {
-  float pitch, storey;        ///< storey 0: one row over the whole height
+  float pitch, storey;  ///< storey 0: one row over the whole height
   float halfWidth, sill, head;
-  float depth;                ///< metres from the wall's face to the glass
+  float depth;  ///< metres from the wall's face to the glass
   bool arched = false;
-  bool groundFloor = false;   ///< doors and shop windows in the lowest row
+  bool groundFloor = false;  ///< doors and shop windows in the lowest row
 };
 
 FacadeStyle styleOf(Material material, std::uint32_t seed) {
   switch (material) {
-    case Material::curtain: return {1.6f, 3.4f, 0.74f, 0.35f, 3.35f, 0.06f};
-    case Material::church: return {4.2f, 0.0f, 0.75f, 2.4f, 0.0f, 0.3f, true};
-    case Material::officeWall: return {2.4f, 0.0f, 0.95f, 0.9f, 2.4f, 0.12f};
-    case Material::stone: return {2.9f, 3.5f, 0.65f, 0.9f, 2.85f, 0.22f, true, true};
+    case Material::curtain:
+      return {1.6f, 3.4f, 0.74f, 0.35f, 3.35f, 0.06f};
+    case Material::church:
+      return {4.2f, 0.0f, 0.75f, 2.4f, 0.0f, 0.3f, true};
+    case Material::officeWall:
+      return {2.4f, 0.0f, 0.95f, 0.9f, 2.4f, 0.12f};
+    case Material::stone:
+      return {2.9f, 3.5f, 0.65f, 0.9f, 2.85f, 0.22f, true, true};
     default: {
       const float width = 0.45f + 0.2f * cellHash(1, 0, seed);
       return {2.1f + 0.9f * cellHash(2, 0, seed), 3.1f, width, 0.85f, 2.45f, 0.14f, false, true};
@@ -32,7 +36,7 @@ FacadeStyle styleOf(Material material, std::uint32_t seed) {
 /// One opening in coordinates from the middle of its cell's floor.
 struct Opening {
   float left, right, bottom, top;
-  float archTop = 0.0f;       ///< above `top`, a half circle of half the width; 0 = none
+  float archTop = 0.0f;  ///< above `top`, a half circle of half the width; 0 = none
   enum class Kind { window, door, shop } kind = Kind::window;
 
   bool holds(float u, float v) const {
@@ -43,7 +47,8 @@ struct Opening {
   }
 };
 
-Opening openingOf(const FacadeStyle& style, std::uint32_t seed, int columnIndex, int columns, int level, float pitch, float storey) {
+Opening openingOf(const FacadeStyle& style, std::uint32_t seed, int columnIndex, int columns, int level, float pitch,
+                  float storey) {
   Opening opening{-style.halfWidth, style.halfWidth, style.sill, style.head};
   if (style.storey <= 0.0f && style.arched) opening.top = storey - style.halfWidth - 1.4f;
   opening.right = std::min(opening.right, pitch * 0.46f);
@@ -60,7 +65,7 @@ Opening openingOf(const FacadeStyle& style, std::uint32_t seed, int columnIndex,
   return opening;
 }
 
-constexpr float kFrameM = 0.07f;   // window frame
+constexpr float kFrameM = 0.07f;  // window frame
 
 /// Glass, frame and what shows behind; u and v within the opening.
 Surface paneSurface(Material material, const Opening& opening, float u, float v, std::uint32_t seed) {
@@ -69,42 +74,52 @@ Surface paneSurface(Material material, const Opening& opening, float u, float v,
   Surface surface{{0.0f, 0.0f, 0.0f}, 0.2f, 0.0f, 6};
   const float chance = cellHash(5, 0, seed);
   if (opening.kind == Opening::Kind::door) {
-    const glm::vec3 paints[4] = {{0.30f, 0.17f, 0.09f}, {0.10f, 0.27f, 0.20f}, {0.35f, 0.08f, 0.08f}, {0.12f, 0.18f, 0.33f}};
+    const glm::vec3 paints[4] = {
+        {0.30f, 0.17f, 0.09f}, {0.10f, 0.27f, 0.20f}, {0.35f, 0.08f, 0.08f}, {0.12f, 0.18f, 0.33f}};
     const float panelU = std::abs(std::abs(u) - 0.28f), panelV = std::abs(std::fmod(v, 0.8f) - 0.4f);
     surface.albedo = paints[static_cast<int>(chance * 4.0f)] * (panelU > 0.2f || panelV > 0.3f ? 1.15f : 0.9f);
     surface.reflectance = 0.35f;
     return surface;
   }
-  const bool bar = material != Material::curtain && (std::abs(u) < 0.03f || (v < opening.top && std::abs(height - 0.68f) < 0.018f));
+  const bool bar =
+      material != Material::curtain && (std::abs(u) < 0.03f || (v < opening.top && std::abs(height - 0.68f) < 0.018f));
   if (fromEdge < (material == Material::curtain ? 0.04f : kFrameM) || bar) {
-    surface.albedo = material == Material::curtain || opening.kind == Opening::Kind::shop ? glm::vec3(0.16f, 0.17f, 0.18f)
-                     : material == Material::church ? glm::vec3(0.35f, 0.33f, 0.30f) : glm::vec3(0.90f, 0.89f, 0.86f);
+    surface.albedo = material == Material::curtain || opening.kind == Opening::Kind::shop
+                         ? glm::vec3(0.16f, 0.17f, 0.18f)
+                     : material == Material::church ? glm::vec3(0.35f, 0.33f, 0.30f)
+                                                    : glm::vec3(0.90f, 0.89f, 0.86f);
     surface.reflectance = 0.6f;
     return surface;
   }
-  const float sheen = std::clamp(height + 0.35f * u, 0.0f, 1.0f);   // the sky mirrored in the pane
+  const float sheen = std::clamp(height + 0.35f * u, 0.0f, 1.0f);  // the sky mirrored in the pane
   surface.albedo = glm::mix(glm::vec3(0.10f, 0.13f, 0.17f), glm::vec3(0.42f, 0.53f, 0.62f), sheen * sheen);
   surface.glow = 0.45f;
-  if (material == Material::church) {
+  if (material == Material::curtain) {
+    surface.albedo =
+        glm::mix(glm::vec3(0.26f, 0.38f, 0.47f), glm::vec3(0.62f, 0.76f, 0.86f), 0.6f * sheen + 0.4f * chance);
+  } else if (material == Material::church) {
     const int row = static_cast<int>(v * 4.0f), columnIndex = static_cast<int>(std::floor(u * 5.0f));
-    const glm::vec3 stained[4] = {{0.55f, 0.12f, 0.14f}, {0.14f, 0.22f, 0.55f}, {0.72f, 0.58f, 0.16f}, {0.15f, 0.42f, 0.26f}};
+    const glm::vec3 stained[4] = {
+        {0.55f, 0.12f, 0.14f}, {0.14f, 0.22f, 0.55f}, {0.72f, 0.58f, 0.16f}, {0.15f, 0.42f, 0.26f}};
     surface.albedo = stained[static_cast<int>(cellHash(columnIndex, row, seed) * 4.0f)];
   } else if (material == Material::officeWall) {
-    surface.albedo = glm::mix(glm::vec3(0.55f, 0.68f, 0.52f), glm::vec3(0.72f, 0.86f, 0.97f), std::clamp(height * 2.5f - 0.4f, 0.0f, 1.0f));
+    surface.albedo = glm::mix(glm::vec3(0.55f, 0.68f, 0.52f), glm::vec3(0.72f, 0.86f, 0.97f),
+                              std::clamp(height * 2.5f - 0.4f, 0.0f, 1.0f));
     surface.glow = 1.0f;
   } else if (opening.kind == Opening::Kind::shop) {
     if (cellHash(static_cast<int>(u * 6.0f), static_cast<int>(v * 3.0f), seed) > 0.72f && v < 1.6f) {
-      surface.albedo = glm::vec3(cellHash(6, 0, seed), cellHash(7, static_cast<int>(u * 6.0f), seed), 0.4f) * 0.8f + 0.1f;
+      surface.albedo =
+          glm::vec3(cellHash(6, 0, seed), cellHash(7, static_cast<int>(u * 6.0f), seed), 0.4f) * 0.8f + 0.1f;
     }
   } else if (material != Material::curtain && chance < 0.45f && std::abs(u) > opening.right * (0.35f + chance)) {
-    surface.albedo = glm::vec3(0.82f, 0.78f, 0.70f) * (0.86f + 0.14f * std::sin(u * 60.0f));   // a curtain's folds
+    surface.albedo = glm::vec3(0.82f, 0.78f, 0.70f) * (0.86f + 0.14f * std::sin(u * 60.0f));  // a curtain's folds
   }
   return surface;
 }
 
 /// Moves the point from the wall's face along the ray to the pane or to the side of the opening.
-Surface enterOpening(Material material, const Opening& opening, float depth, float u, float v, int axisU, std::uint32_t seed,
-                     const glm::vec3& direction, WallHit& hit) {
+Surface enterOpening(Material material, const Opening& opening, float depth, float u, float v, int axisU,
+                     std::uint32_t seed, const glm::vec3& direction, WallHit& hit) {
   const float inwards = std::max(-glm::dot(direction, hit.normal), 1e-3f);
   const float through = depth / inwards;
   const float du = direction[axisU], dv = direction.z;
@@ -117,8 +132,10 @@ Surface enterOpening(Material material, const Opening& opening, float depth, flo
   const bool jamb = sideways < upwards || upwards < 0.0f;
   hit.deeper = std::clamp(jamb ? sideways : upwards, 0.0f, through);
   hit.normal = glm::vec3(0.0f);
-  if (jamb) hit.normal[axisU] = du > 0.0f ? -1.0f : 1.0f;
-  else hit.normal.z = dv > 0.0f ? -1.0f : 1.0f;
+  if (jamb)
+    hit.normal[axisU] = du > 0.0f ? -1.0f : 1.0f;
+  else
+    hit.normal.z = dv > 0.0f ? -1.0f : 1.0f;
   return {{0.74f, 0.71f, 0.66f}, 0.6f, 0.0f, 6};
 }
 
@@ -152,11 +169,13 @@ Surface facadeSurface(Material material, std::uint32_t seed, std::uint8_t window
     const bool trim = style.groundFloor && opening.kind == Opening::Kind::window && v > opening.bottom - 0.12f &&
                       v < opening.top + 0.16f && std::abs(u) < opening.right + 0.11f;
     if (trim && !(style.arched && v > opening.top)) return {{0.80f, 0.77f, 0.71f}, 0.65f, 0.0f, 6};
-    if (style.groundFloor && level > 0 && v < 0.16f) return {{0.76f, 0.73f, 0.67f}, 0.65f, 0.0f, 6};   // string course
-    if (opening.kind == Opening::Kind::shop && v > 2.7f) {   // the shop's sign
-      const glm::vec3 sign(0.2f + 0.6f * cellHash(8, 0, seed), 0.2f + 0.4f * cellHash(9, 0, seed), 0.2f + 0.5f * cellHash(10, 0, seed));
-      const bool letter = v > 2.8f && v < 3.0f && std::abs(u) < pitch * 0.35f &&
-                          cellHash(static_cast<int>(std::floor(u * 9.0f)), static_cast<int>(v * 14.0f), seed + 5) > 0.45f;
+    if (style.groundFloor && level > 0 && v < 0.16f) return {{0.76f, 0.73f, 0.67f}, 0.65f, 0.0f, 6};  // string course
+    if (opening.kind == Opening::Kind::shop && v > 2.7f) {                                            // the shop's sign
+      const glm::vec3 sign(0.2f + 0.6f * cellHash(8, 0, seed), 0.2f + 0.4f * cellHash(9, 0, seed),
+                           0.2f + 0.5f * cellHash(10, 0, seed));
+      const bool letter =
+          v > 2.8f && v < 3.0f && std::abs(u) < pitch * 0.35f &&
+          cellHash(static_cast<int>(std::floor(u * 9.0f)), static_cast<int>(v * 14.0f), seed + 5) > 0.45f;
       return {letter ? glm::vec3(0.93f, 0.92f, 0.86f) : sign, 0.45f, 0.0f, 6};
     }
   }

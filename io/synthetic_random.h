@@ -41,7 +41,8 @@ class CounterRandom {
 
 /// [0, 1) for one cell of a texture.
 inline float cellHash(int x, int y, std::uint32_t seed) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x85ebca6bU ^ static_cast<std::uint32_t>(y) * 0xc2b2ae35U ^ seed * 0x27d4eb2fU;
+  std::uint32_t h =
+      static_cast<std::uint32_t>(x) * 0x85ebca6bU ^ static_cast<std::uint32_t>(y) * 0xc2b2ae35U ^ seed * 0x27d4eb2fU;
   h = (h ^ (h >> 15)) * 0x2c1b3c6dU;
   h = (h ^ (h >> 12)) * 0x297a2d39U;
   return static_cast<float>((h ^ (h >> 15)) >> 8) * 0x1p-24f;

@@ -9,30 +9,30 @@
 namespace strata {
 
 /// One position of a scanner. Rays are uniform in azimuth; those of a tripod also in elevation, as a turning mirror
-/// sends them, so that level ground gets N h / (2 pi (e1 - e0) r (r^2 + h^2)) points per square metre at the distance r;
-/// those from the air are uniform in solid angle.
+/// sends them, so that level ground gets N h / (2 pi (e1 - e0) r (r^2 + h^2)) points per square metre at the distance
+/// r; those from the air are uniform in solid angle.
 struct Station {
   glm::vec3 position{0.0f};
-  float lowest = -1.05f, highest = 1.3f;   ///< elevation, radians
-  float reach = 120.0f;                    ///< metres; farther surfaces give no echo
+  float lowest = -1.05f, highest = 1.3f;  ///< elevation, radians
+  float reach = 120.0f;                   ///< metres; farther surfaces give no echo
   bool solidAngle = false;
-  float weight = 1.0f;                     ///< relative number of points per radian of azimuth and elevation
+  float weight = 1.0f;  ///< relative number of points per radian of azimuth and elevation
 };
 
 /// Light that the camera saw while the scanner ran.
 struct Lighting {
   bool indoor = false;
-  glm::vec3 sun{-0.52f, -0.42f, 0.74f};    ///< unit, towards the sun (outdoors)
-  std::vector<float> lampRows;             ///< y of the rows of ceiling lamps (indoors)
-  float lampPitch = 2.4f;                  ///< x from lamp to lamp; the first at half of it
+  glm::vec3 sun{-0.52f, -0.42f, 0.74f};  ///< unit, towards the sun (outdoors)
+  std::vector<float> lampRows;           ///< y of the rows of ceiling lamps (indoors)
+  float lampPitch = 2.4f;                ///< x from lamp to lamp; the first at half of it
   float lampHeight = 2.8f;
 };
 
-/// A scene as laser scanners see it: first surfaces only, noise of some millimetres along the ray. Point i belongs to the
-/// station whose range of the scan holds i, and a station's points run round its azimuth, as a real scanner's do.
+/// A scene as laser scanners see it: first surfaces only, noise of some millimetres along the ray. Point i belongs to
+/// the station whose range of the scan holds i, and a station's points run round its azimuth, as a real scanner's do.
 class ScannerScan final : public SyntheticShape {
  public:
-  static constexpr float kNoiseM = 0.002f;     ///< standard deviation of the range
+  static constexpr float kNoiseM = 0.002f;  ///< standard deviation of the range
 
   /// `ground` is the material at z = 0. Stations must have something below them.
   ScannerScan(Scene scene, Material ground, Lighting lighting, std::vector<Station> stations, const ShapeFrame& frame,
@@ -46,12 +46,12 @@ class ScannerScan final : public SyntheticShape {
   std::size_t stationOf(std::uint64_t point) const;
 
  private:
-  /// Azimuths in equal bins, each with the elevation above which there is only sky: rays are drawn below it, so that few
-  /// are drawn in vain.
+  /// Azimuths in equal bins, each with the elevation above which there is only sky: rays are drawn below it, so that
+  /// few are drawn in vain.
   struct Horizon {
     static constexpr int kBins = 1024;
-    std::vector<float> highest;      ///< elevation (or its sine), kBins
-    std::vector<float> cumulative;   ///< area below the horizon, kBins + 1, from 0 to 1
+    std::vector<float> highest;     ///< elevation (or its sine), kBins
+    std::vector<float> cumulative;  ///< area below the horizon, kBins + 1, from 0 to 1
     float lowest = 0.0f;
     float area = 0.0f;
   };
@@ -69,7 +69,7 @@ class ScannerScan final : public SyntheticShape {
   ShapeFrame frame_;
   std::uint64_t key_;
   std::vector<Horizon> horizons_;
-  std::vector<std::uint64_t> firstPoint_;   ///< of each station, and the total
+  std::vector<std::uint64_t> firstPoint_;  ///< of each station, and the total
 };
 
 }  // namespace strata

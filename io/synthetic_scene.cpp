@@ -67,8 +67,8 @@ bool intersectRoof(const Primitive& p, int index, const Ray& ray, const Span& sp
 bool intersectCone(const Primitive& p, int index, const Ray& ray, const Span& span, Hit& hit) {
   const glm::vec3 middle = (p.min + p.max) * 0.5f;
   const float radius = (p.max.x - p.min.x) * 0.5f;
-  const float shrink = radius * (1.0f - p.taper) / (p.max.z - p.min.z);   // radius lost per metre of height
-  if (span.axis == 2) {   // through the lid or the base, if within its circle
+  const float shrink = radius * (1.0f - p.taper) / (p.max.z - p.min.z);  // radius lost per metre of height
+  if (span.axis == 2) {  // through the lid or the base, if within its circle
     const glm::vec3 at = ray.origin + ray.direction * span.near - middle;
     const float r = ray.direction.z > 0.0f ? radius : radius * p.taper;
     if (at.x * at.x + at.y * at.y <= r * r) return accept(span.near, sideNormal(ray, 2), index, hit);
@@ -85,10 +85,28 @@ bool intersectCone(const Primitive& p, int index, const Ray& ray, const Span& sp
     if (z < p.min.z || z > p.max.z || r0 + dr * t < 0.0f) continue;
     const glm::vec2 out = o + d * t;
     const glm::vec3 normal = glm::normalize(glm::vec3(out.x, out.y, glm::length(out) * shrink));
-    if (glm::dot(normal, ray.direction) >= 0.0f) continue;   // the way out, or the mirrored cone
+    if (glm::dot(normal, ray.direction) >= 0.0f) continue;  // the way out, or the mirrored cone
     return accept(t, normal, index, hit);
   }
   return false;
+}
+
+/// A way through leaves: exponential steps, each ending at a leaf where a twig is; twigs are fewer towards the outside,
+/// which frays the crown's outline. `o` and `d` are the ray in the unit ball's frame. Beyond `far`: nothing was hit.
+float leafAlong(const Primitive& p, int index, const Ray& ray, const glm::vec3& o, const glm::vec3& d, float t,
+                float far) {
+  constexpr int kSteps = 5;
+  constexpr float kTwigsPerMetre = 3.2f;
+  CounterRandom random(ray.seed, static_cast<std::uint64_t>(index));
+  for (int step = 0; step < kSteps; ++step) {
+    t -= p.meanFreePath * std::log(1.0f - random.uniformFloat());
+    if (t > far) break;
+    const glm::vec3 in = o + d * t;
+    const glm::ivec3 twig(glm::floor((ray.origin + ray.direction * t) * kTwigsPerMetre));
+    const float fromMiddle = glm::dot(in, in);
+    if (cellHash(twig.x + twig.z * 977, twig.y, p.seed) > fromMiddle * fromMiddle * 0.85f) return t;
+  }
+  return far + 1.0f;
 }
 
 bool intersectEllipsoid(const Primitive& p, int index, const Ray& ray, Hit& hit) {
@@ -101,9 +119,9 @@ bool intersectEllipsoid(const Primitive& p, int index, const Ray& ray, Hit& hit)
   const float root = std::sqrt(discriminant);
   float t = (-b - root) / a;
   if (p.kind == PrimitiveKind::foliage) {
-    const float u = CounterRandom(ray.seed, static_cast<std::uint64_t>(index)).uniformFloat();
-    t = std::max(t, 0.0f) - p.meanFreePath * std::log(1.0f - u);   // exponential: leaves at random
-    if (t > (-b + root) / a) return false;
+    const float far = (-b + root) / a;
+    t = leafAlong(p, index, ray, o, d, std::max(t, 0.0f), far);
+    if (t > far) return false;
   }
   return accept(t, glm::normalize((o + d * t) * scale), index, hit);
 }
@@ -128,17 +146,24 @@ bool intersect(const Primitive& primitive, int index, const Ray& ray, Hit& hit) 
   const Span span = spanInBox(primitive, ray);
   if (span.near > span.far || span.far < 0.0f || span.near >= hit.t) return false;
   switch (primitive.kind) {
-    case PrimitiveKind::box: return accept(span.near, sideNormal(ray, span.axis), index, hit);
-    case PrimitiveKind::roof: return intersectRoof(primitive, index, ray, span, hit);
-    case PrimitiveKind::cone: return intersectCone(primitive, index, ray, span, hit);
+    case PrimitiveKind::box:
+      return accept(span.near, sideNormal(ray, span.axis), index, hit);
+    case PrimitiveKind::roof:
+      return intersectRoof(primitive, index, ray, span, hit);
+    case PrimitiveKind::cone:
+      return intersectCone(primitive, index, ray, span, hit);
     case PrimitiveKind::ellipsoid:
-    case PrimitiveKind::foliage: return intersectEllipsoid(primitive, index, ray, hit);
+    case PrimitiveKind::foliage:
+      return intersectEllipsoid(primitive, index, ray, hit);
   }
   return false;
 }
 
 Scene::Scene(std::vector<Primitive> primitives, const glm::vec2& groundMin, const glm::vec2& groundMax, float cellSize)
-    : primitives_(std::move(primitives)), groundMin_(groundMin), groundMax_(groundMax), cellSize_(cellSize),
+    : primitives_(std::move(primitives)),
+      groundMin_(groundMin),
+      groundMax_(groundMax),
+      cellSize_(cellSize),
       cells_(glm::max(glm::ivec2(glm::ceil((groundMax - groundMin) / cellSize)), glm::ivec2(1))) {
   const std::size_t count = static_cast<std::size_t>(cells_.x) * static_cast<std::size_t>(cells_.y);
   std::vector<std::vector<std::uint32_t>> lists(count);
@@ -150,7 +175,8 @@ Scene::Scene(std::vector<Primitive> primitives, const glm::vec2& groundMin, cons
     const glm::ivec2 high = column(glm::vec2(p.max.x, p.max.y), groundMin_, cellSize_, cells_);
     for (int y = low.y; y <= high.y; ++y) {
       for (int x = low.x; x <= high.x; ++x) {
-        const std::size_t cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(x);
+        const std::size_t cell =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(x);
         lists[cell].push_back(i);
         cellTop_[cell] = std::max(cellTop_[cell], p.max.z);
       }
@@ -167,7 +193,10 @@ Scene::Scene(std::vector<Primitive> primitives, const glm::vec2& groundMin, cons
 template <bool kAnyHit>
 bool Scene::walk(const Ray& ray, float reach, Hit& hit) const {
   const glm::vec2 origin(ray.origin.x, ray.origin.y);
-  glm::ivec2 cell(glm::floor((origin - groundMin_) / cellSize_));
+  const float atTop = (top_ - ray.origin.z) * ray.inverse.z;  // nothing lies above
+  const bool fallsIn = ray.direction.z < 0.0f && atTop > 0.0f;
+  const glm::vec2 start = fallsIn ? origin + glm::vec2(ray.direction.x, ray.direction.y) * atTop : origin;
+  glm::ivec2 cell(glm::floor((start - groundMin_) / cellSize_));
   glm::vec2 next, delta;
   glm::ivec2 step;
   for (int axis = 0; axis < 2; ++axis) {
@@ -177,13 +206,14 @@ bool Scene::walk(const Ray& ray, float reach, Hit& hit) const {
     next[axis] = (border - origin[axis]) * ray.inverse[axis];
     delta[axis] = cellSize_ * std::abs(ray.inverse[axis]);
   }
-  const float end = std::min(hit.t, reach);
+  const float end = std::min({hit.t, reach, ray.direction.z > 0.0f ? atTop : reach});
   hit.t = end;
   bool found = false;
-  for (float enter = 0.0f; enter < hit.t;) {
+  for (float enter = fallsIn ? atTop : 0.0f; enter < hit.t;) {
     if (cell.x < 0 || cell.y < 0 || cell.x >= cells_.x || cell.y >= cells_.y) break;
     const float leave = std::min(next.x, next.y);
-    const std::size_t at = static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(cell.x);
+    const std::size_t at =
+        static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(cells_.x) + static_cast<std::size_t>(cell.x);
     const float lowest = ray.origin.z + ray.direction.z * (ray.direction.z > 0.0f ? enter : std::min(leave, end));
     if (lowest <= cellTop_[at]) {
       for (std::uint32_t i = cellStart_[at]; i < cellStart_[at + 1]; ++i) {
@@ -191,8 +221,6 @@ bool Scene::walk(const Ray& ray, float reach, Hit& hit) const {
         found |= intersect(primitives_[item], static_cast<int>(item), ray, hit);
         if (kAnyHit && found) return true;
       }
-    } else if (lowest > top_ && ray.direction.z > 0.0f) {
-      break;
     }
     const int axis = next.x < next.y ? 0 : 1;
     cell[axis] += step[axis];
@@ -208,7 +236,8 @@ bool Scene::trace(const Ray& ray, float reach, Hit& hit) const {
   if (ray.direction.z < 0.0f) {
     const float t = -ray.origin.z * ray.inverse.z;
     const glm::vec3 at = ray.origin + ray.direction * t;
-    ground = t > 0.0f && t < reach && at.x >= groundMin_.x && at.y >= groundMin_.y && at.x <= groundMax_.x && at.y <= groundMax_.y;
+    ground = t > 0.0f && t < reach && at.x >= groundMin_.x && at.y >= groundMin_.y && at.x <= groundMax_.x &&
+             at.y <= groundMax_.y;
     if (ground) hit.t = t;
   }
   return walk<false>(ray, reach, hit) || ground;

@@ -11,10 +11,10 @@ namespace strata {
 
 enum class PrimitiveKind : std::uint8_t {
   box,
-  roof,       ///< box under sloping planes: z <= min.z + slope * distance from the side, per axis with a slope
-  cone,       ///< upright; its radius falls linearly to `taper` of it at the top (1 = cylinder, 0 = cone)
+  roof,  ///< box under sloping planes: z <= min.z + slope * distance from the side, per axis with a slope
+  cone,  ///< upright; its radius falls linearly to `taper` of it at the top (1 = cylinder, 0 = cone)
   ellipsoid,
-  foliage,    ///< ellipsoid that stops a ray after a random way: the leaves of a crown
+  foliage,  ///< ellipsoid that stops a ray after a random way: the leaves of a crown
 };
 
 /// One object, given by the box around it and what its kind adds. Scene coordinates, metres.
@@ -22,11 +22,11 @@ struct Primitive {
   glm::vec3 min{0.0f}, max{0.0f};
   PrimitiveKind kind = PrimitiveKind::box;
   Material material = Material::plaster;
-  std::uint8_t windowSides = 0;     ///< of boxes, see side::
-  std::uint32_t seed = 0;           ///< picks colour and texture
-  glm::vec2 slope{0.0f};            ///< of roofs: rise per metre from the sides across x and across y; 0 = gable
-  float taper = 1.0f;               ///< of cones
-  float meanFreePath = 1.0f;        ///< of foliage, metres
+  std::uint8_t windowSides = 0;  ///< of boxes, see side::
+  std::uint32_t seed = 0;        ///< picks colour and texture
+  glm::vec2 slope{0.0f};         ///< of roofs: rise per metre from the sides across x and across y; 0 = gable
+  float taper = 1.0f;            ///< of cones
+  float meanFreePath = 1.0f;     ///< of foliage, metres
 };
 
 /// `direction` is a unit vector without components of zero; `seed` decides where foliage stops the ray.
@@ -39,7 +39,7 @@ struct Ray {
 struct Hit {
   static constexpr int kGround = -1;
 
-  float t = std::numeric_limits<float>::infinity();   ///< metres along the ray
+  float t = std::numeric_limits<float>::infinity();  ///< metres along the ray
   int primitive = kGround;
   glm::vec3 normal{0.0f, 0.0f, 1.0f};
 };
@@ -74,9 +74,9 @@ class Scene {
   float cellSize_;
   glm::ivec2 cells_;
   float top_ = 0.0f;
-  std::vector<std::uint32_t> cellStart_;   ///< cells + 1 entries into cellItems_
+  std::vector<std::uint32_t> cellStart_;  ///< cells + 1 entries into cellItems_
   std::vector<std::uint32_t> cellItems_;
-  std::vector<float> cellTop_;             ///< highest point of each column
+  std::vector<float> cellTop_;  ///< highest point of each column
 };
 
 }  // namespace strata

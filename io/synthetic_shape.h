@@ -9,11 +9,11 @@ namespace strata {
 
 /// What the generators of a synthetic scan make; the source rounds, clamps and packs it.
 struct SyntheticPoint {
-  glm::dvec3 position{0.0};             ///< metres, relative to the shape's origin
-  glm::vec3 normal{0.0f, 0.0f, 1.0f};   ///< unit; stored only where the shape says so
-  glm::vec3 colour{0.0f};               ///< 0 to 1, as displayed
-  float intensity = 0.0f;               ///< 0 to 1
-  std::uint8_t classification = 1;      ///< ASPRS
+  glm::dvec3 position{0.0};            ///< metres, relative to the shape's origin
+  glm::vec3 normal{0.0f, 0.0f, 1.0f};  ///< unit; stored only where the shape says so
+  glm::vec3 colour{0.0f};              ///< 0 to 1, as displayed
+  float intensity = 0.0f;              ///< 0 to 1
+  std::uint8_t classification = 1;     ///< ASPRS
 };
 
 /// ASPRS classes that the generators use.
@@ -23,8 +23,8 @@ inline constexpr std::uint8_t kUnclassified = 1, kGround = 2, kLowVegetation = 3
 }  // namespace asprs
 
 struct ShapeFrame {
-  glm::dvec3 origin{0.0};            ///< world
-  glm::dvec3 min{0.0}, max{0.0};     ///< relative to origin; the source clamps points into it
+  glm::dvec3 origin{0.0};         ///< world
+  glm::dvec3 min{0.0}, max{0.0};  ///< relative to origin; the source clamps points into it
   bool hasNormals = false;
 };
 

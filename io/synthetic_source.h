@@ -13,8 +13,8 @@ inline constexpr double kSyntheticMaxPoints = 1e11;
 inline constexpr double kSyntheticStep = 0.001;
 
 /// `synthetic:NAME?points=1e9&seed=1`, with NAME one of plane, room, city, terrain, stack, sphere, degenerate, points
-/// from 1 to kSyntheticMaxPoints (1e6 where not given) and seed a whole number (1). Point i depends on the specification
-/// alone, whatever part or thread makes it. Throws UsageError for anything else.
+/// from 1 to kSyntheticMaxPoints (1e6 where not given) and seed a whole number (1). Point i depends on the
+/// specification alone, whatever part or thread makes it. Throws UsageError for anything else.
 std::unique_ptr<PointSource> openSynthetic(const std::string& spec);
 
 }  // namespace strata
