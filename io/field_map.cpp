@@ -63,6 +63,18 @@ IntensityScale intensityScale(const FieldRange& range) {
   return {-range.min, span > 0.0 && std::isfinite(span) ? 65535.0 / span : 1.0};
 }
 
+std::optional<ScalarType> knownFieldType(std::string_view name) {
+  const std::string plain = plainName(name);
+  for (const Known& known : kKnown)
+    if (plain == plainName(known.name)) return known.type;
+  if (plain == attribute::kIntensity) return ScalarType::u16;
+  for (const std::string_view colour : {"red", "green", "blue", "r", "g", "b"})
+    if (plain == colour) return ScalarType::u16;
+  for (const std::string_view normal : {"nx", "ny", "nz", "normalx", "normaly", "normalz"})
+    if (plain == normal) return ScalarType::f32;
+  return std::nullopt;
+}
+
 AxisFields findAxes(std::span<const Field> fields) {
   AxisFields axes;
   for (std::size_t i = 0; i < fields.size(); ++i)
@@ -79,9 +91,14 @@ double float32Step(double largest) {
   return powerOfTenAtMost(ulp * 0.5);
 }
 
-double relativeStep(double largest) {
-  if (!(largest > 0.0)) return 0.0;
-  return std::max(1e-9, powerOfTenAtMost(largest * 1e-9 * (1.0 + 1e-12)));
+double float64Step(const Box& bounds) {
+  if (bounds.empty()) return 0.0;
+  const glm::dvec3 size = bounds.size();
+  const glm::dvec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+  double length = std::max({size.x, size.y, size.z});
+  if (length <= 0.0) length = std::max({reach.x, reach.y, reach.z});
+  if (!(length > 0.0)) return 0.0;
+  return std::max(1e-9, powerOfTenAtMost(length * 1e-9 * (1.0 + 1e-12)));
 }
 
 glm::dvec3 fillSteps(glm::dvec3 step) {
@@ -175,8 +192,8 @@ class FieldMapBuilder {
       used_[index] = true;
       add(attribute::kRgb, ScalarType::u16, 3);
       for (std::size_t k = 0; k < 3; ++k)
-        pending_.push_back({attributes_.size() - 1,
-                            {.from = fields_[index].offset + 2 - k, .to = 2 * k, .toType = ScalarType::u16}});
+        pending_.push_back(
+            {attributes_.size() - 1, {.from = fields_[index].offset + 2 - k, .to = 2 * k, .toType = ScalarType::u16}});
       if (name == "rgba") {
         add("extra:alpha", ScalarType::u8, 1);
         copy(fields_[index].offset + 3, 1);
@@ -254,7 +271,7 @@ class FieldMapBuilder {
 
   struct Pending {
     std::size_t attribute;
-    FieldMap::Step step;   ///< `to` counts from the attribute's own start
+    FieldMap::Step step;  ///< `to` counts from the attribute's own start
   };
 
   std::span<const Field> fields_;
@@ -280,7 +297,7 @@ void FieldMap::attributes(const std::byte* record, std::byte* out) const {
     }
     const double value = std::round(loadScalar(record + step.from, step.fromType) * step.scale + step.offset);
     const double top = step.toType == ScalarType::u8 ? 255.0 : 65535.0;
-    const auto stored = static_cast<std::uint16_t>(value > 0.0 ? std::min(value, top) : 0.0);   // NaN gives 0
+    const auto stored = static_cast<std::uint16_t>(value > 0.0 ? std::min(value, top) : 0.0);  // NaN gives 0
     std::memcpy(out + step.to, &stored, scalarBytes(step.toType));
   }
 }

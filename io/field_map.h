@@ -21,8 +21,8 @@ static_assert(std::endian::native == std::endian::little, "records are read as t
 struct Field {
   std::string name;
   ScalarType type = ScalarType::f32;
-  std::uint32_t count = 1;     ///< values that stand under this name
-  std::size_t offset = 0;      ///< bytes from the start of the record
+  std::uint32_t count = 1;  ///< values that stand under this name
+  std::size_t offset = 0;   ///< bytes from the start of the record
 
   std::size_t bytes() const { return scalarBytes(type) * count; }
 };
@@ -45,16 +45,26 @@ inline double loadScalar(const std::byte* bytes, ScalarType type) {
     return static_cast<double>(value);
   };
   switch (type) {
-    case ScalarType::u8: return load(std::uint8_t{});
-    case ScalarType::i8: return load(std::int8_t{});
-    case ScalarType::u16: return load(std::uint16_t{});
-    case ScalarType::i16: return load(std::int16_t{});
-    case ScalarType::u32: return load(std::uint32_t{});
-    case ScalarType::i32: return load(std::int32_t{});
-    case ScalarType::u64: return load(std::uint64_t{});
-    case ScalarType::i64: return load(std::int64_t{});
-    case ScalarType::f32: return load(float{});
-    case ScalarType::f64: return load(double{});
+    case ScalarType::u8:
+      return load(std::uint8_t{});
+    case ScalarType::i8:
+      return load(std::int8_t{});
+    case ScalarType::u16:
+      return load(std::uint16_t{});
+    case ScalarType::i16:
+      return load(std::int16_t{});
+    case ScalarType::u32:
+      return load(std::uint32_t{});
+    case ScalarType::i32:
+      return load(std::int32_t{});
+    case ScalarType::u64:
+      return load(std::uint64_t{});
+    case ScalarType::i64:
+      return load(std::int64_t{});
+    case ScalarType::f32:
+      return load(float{});
+    case ScalarType::f64:
+      return load(double{});
   }
   return 0.0;
 }
@@ -91,9 +101,9 @@ class FieldMap {
   struct Step {
     std::size_t from = 0;
     std::size_t to = 0;
-    std::size_t copyBytes = 0;   ///< 0 = convert
+    std::size_t copyBytes = 0;  ///< 0 = convert
     ScalarType fromType = ScalarType::u8;
-    ScalarType toType = ScalarType::u8;   ///< u8 or u16
+    ScalarType toType = ScalarType::u8;  ///< u8 or u16
     double scale = 1.0;
     double offset = 0.0;
   };

@@ -18,7 +18,7 @@ struct PcdHeader {
   std::vector<Field> fields;
   std::uint64_t points = 0;
   std::size_t recordBytes = 0;
-  std::size_t headerBytes = 0;    ///< with the DATA line
+  std::size_t headerBytes = 0;  ///< with the DATA line
   std::uint64_t headerLines = 0;
 };
 

@@ -33,8 +33,8 @@ enum class PlyEncoding : std::uint8_t { ascii, littleEndian, bigEndian };
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  std::size_t vertex = 0;         ///< index of the element that has the points
-  std::size_t headerBytes = 0;    ///< with the line end after end_header
+  std::size_t vertex = 0;       ///< index of the element that has the points
+  std::size_t headerBytes = 0;  ///< with the line end after end_header
   std::uint64_t headerLines = 0;
 };
 

@@ -15,11 +15,18 @@ constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 
 std::size_t recordsPerBlock(std::size_t recordBytes) { return std::max<std::size_t>(1, kBlockBytes / recordBytes); }
 
-/// Raises `decimals` to what `value` needs to be a decimal number to the last bit.
+constexpr double kPowersOfTen[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+/// Raises `decimals` to what `value` needs to be integer * 10^-decimals but for rounding: two units in its last place
+/// or 1e-12, as where scale * integer + offset was computed. Digits within that rounding do not count as a grid.
 void countDecimals(double value, int& decimals) {
-  static constexpr double kPowers[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-  while (decimals < RecordSample::kManyDecimals && std::round(value * kPowers[decimals]) / kPowers[decimals] != value)
-    ++decimals;
+  const double rounding = std::max(std::abs(value) * 4.5e-16, 1e-12);
+  for (; decimals < RecordSample::kManyDecimals; ++decimals) {
+    if (8.0 * rounding * kPowersOfTen[decimals] > 1.0)
+      decimals = RecordSample::kManyDecimals - 1;  // the grid would be finer than the numbers are
+    else if (std::abs(std::round(value * kPowersOfTen[decimals]) / kPowersOfTen[decimals] - value) <= rounding)
+      return;
+  }
 }
 
 /// Reads `count` records from number `first` on and makes them little-endian.
@@ -40,8 +47,8 @@ class RecordReader final : public PointReader {
     block.positions.clear();
     block.attributes.clear();
     while (block.count() < maxPoints && next_ < end_) {
-      const std::uint64_t wanted = std::min<std::uint64_t>(
-          {maxPoints - block.count(), end_ - next_, recordsPerBlock(file_.recordBytes)});
+      const std::uint64_t wanted =
+          std::min<std::uint64_t>({maxPoints - block.count(), end_ - next_, recordsPerBlock(file_.recordBytes)});
       readRecords(bytes_, file_, next_, static_cast<std::size_t>(wanted), buffer_);
       appendRecords(map_, buffer_.data(), file_.recordBytes, static_cast<std::size_t>(wanted), block);
       next_ += wanted;
@@ -61,13 +68,13 @@ class RecordReader final : public PointReader {
 class RecordSource final : public PointSource {
  public:
   RecordSource(std::unique_ptr<ByteSource> bytes, RecordFile file) : bytes_(std::move(bytes)), file_(std::move(file)) {
-    checkLength();
+    readable_ = checkedCount();
     const RecordSample sample = lookAtSome();
     map_ = FieldMap(bytes_->name(), file_.fields, sample.ranges);
     info_.path = bytes_->name();
     info_.format = file_.format;
     info_.pointCount = file_.pointCount;
-    describePositions(map_, sample, sample.points == file_.pointCount, info_);
+    describePositions(map_, sample, sample.points == readable_, info_);
     info_.layout = map_.layout();
     info_.fileBytes = bytes_->size();
     info_.uncompressedBytes = bytes_->size();
@@ -75,20 +82,22 @@ class RecordSource final : public PointSource {
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override {
-    return static_cast<std::size_t>((file_.pointCount + kPartPoints - 1) / kPartPoints);
+    return static_cast<std::size_t>((readable_ + kPartPoints - 1) / kPartPoints);
   }
   std::unique_ptr<PointReader> openPart(std::size_t part) const override {
     const std::uint64_t first = part * kPartPoints;
-    return std::make_unique<RecordReader>(*bytes_, file_, map_, first, std::min(first + kPartPoints, file_.pointCount));
+    return std::make_unique<RecordReader>(*bytes_, file_, map_, first, std::min(first + kPartPoints, readable_));
   }
 
  private:
-  void checkLength() const {
+  /// How many points the file really has.
+  std::uint64_t checkedCount() const {
     const std::uint64_t rest = bytes_->size() - std::min(bytes_->size(), file_.dataOffset);
     if (file_.recordBytes == 0) throw Error(bytes_->name(), "its points have no fields");
-    if (file_.pointCount > rest / file_.recordBytes)
+    if (file_.pointCount > rest / file_.recordBytes && !file_.skipDamaged)
       throw Error(bytes_->name(), "the file ends early, found " + std::to_string(rest / file_.recordBytes) +
                                       " points (expected " + std::to_string(file_.pointCount) + ")");
+    return std::min(file_.pointCount, rest / file_.recordBytes);
   }
 
   RecordSample lookAtSome() const {
@@ -102,12 +111,12 @@ class RecordSource final : public PointSource {
         addToSample(sample, file_.fields, buffer, file_.recordBytes);
       }
     };
-    if (file_.pointCount <= kSamplePoints) {
-      look(0, file_.pointCount);
+    if (readable_ <= kSamplePoints) {
+      look(0, readable_);
     } else {
       const std::uint64_t length = kSamplePoints / kSampleRuns / 16;
       for (std::uint64_t run = 0; run < kSampleRuns; ++run) {
-        const std::uint64_t first = (file_.pointCount - length) / (kSampleRuns - 1) * run;
+        const std::uint64_t first = (readable_ - length) / (kSampleRuns - 1) * run;
         look(first, first + length);
       }
     }
@@ -116,6 +125,7 @@ class RecordSource final : public PointSource {
 
   std::unique_ptr<ByteSource> bytes_;
   RecordFile file_;
+  std::uint64_t readable_ = 0;
   FieldMap map_;
   SourceInfo info_;
 };
@@ -147,10 +157,10 @@ void describePositions(const FieldMap& map, const RecordSample& sample, bool com
   info.boundsExact = complete;
   if (complete) info.bounds = sample.bounds;
   if (sample.bounds.empty()) return;
-  const bool anyFloat32 = map.axis(0).type == ScalarType::f32 || map.axis(1).type == ScalarType::f32 ||
-                          map.axis(2).type == ScalarType::f32;
+  const bool anyFloat32 =
+      map.axis(0).type == ScalarType::f32 || map.axis(1).type == ScalarType::f32 || map.axis(2).type == ScalarType::f32;
   if (complete && !anyFloat32 && sample.decimals < RecordSample::kManyDecimals) {
-    info.step = glm::dvec3(std::pow(10.0, -sample.decimals));
+    info.step = glm::dvec3(1.0 / kPowersOfTen[sample.decimals]);
     info.gridExact = true;
     return;
   }
@@ -158,9 +168,14 @@ void describePositions(const FieldMap& map, const RecordSample& sample, bool com
   for (int axis = 0; axis < 3; ++axis) {
     const double largest = std::max(std::abs(sample.bounds.min[axis]), std::abs(sample.bounds.max[axis]));
     switch (map.axis(axis).type) {
-      case ScalarType::f32: step[axis] = float32Step(largest); break;
-      case ScalarType::f64: step[axis] = relativeStep(largest); break;
-      default: step[axis] = 1.0;
+      case ScalarType::f32:
+        step[axis] = float32Step(largest);
+        break;
+      case ScalarType::f64:
+        step[axis] = float64Step(sample.bounds);
+        break;
+      default:
+        step[axis] = 1.0;
     }
   }
   info.step = fillSteps(step);

@@ -18,7 +18,7 @@ struct RecordFile {
   std::uint64_t pointCount = 0;
   std::size_t recordBytes = 0;
   bool bigEndian = false;
-  bool skipDamaged = false;      ///< a file that ends early gives the whole records it has
+  bool skipDamaged = false;  ///< a file that ends early gives the whole records it has
   std::vector<Field> fields;
 };
 
@@ -29,10 +29,10 @@ std::unique_ptr<PointSource> openRecords(std::unique_ptr<ByteSource> bytes, Reco
 
 /// Ranges of fields and coordinates over some of the points.
 struct RecordSample {
-  std::vector<FieldRange> ranges;   ///< one a field
-  Box bounds;                       ///< of the points whose coordinates are all finite
+  std::vector<FieldRange> ranges;  ///< one a field
+  Box bounds;                      ///< of the points whose coordinates are all finite
   std::uint64_t points = 0;
-  int decimals = 0;                 ///< that all coordinates get by with; kManyDecimals where more than 9
+  int decimals = 0;  ///< that all coordinates get by with; kManyDecimals where more than 9
   static constexpr int kManyDecimals = 10;
 };
 /// `records` are little-endian; adds them to the sample.

@@ -42,7 +42,7 @@ template <typename T>
 bool storeFloat(std::string_view token, std::byte* out) {
   T value = 0;
   if (!parse(token, value)) {
-    double wide = 0.0;   // numbers that float32 has no room for become 0 or infinite
+    double wide = 0.0;  // numbers that float32 has no room for become 0 or infinite
     if (!parse(token, wide)) return false;
     value = static_cast<T>(wide);
   }
@@ -99,10 +99,14 @@ void splitColumns(std::string_view line, std::vector<std::string_view>& tokens) 
   skipBlanks();
   while (at < end) {
     const char* start = at;
-    while (at < end && !isBlank(*at) && !isSeparator(*at)) ++at;
-    std::string_view token(start, static_cast<std::size_t>(at - start));
-    if (token.size() >= 2 && token.front() == '"' && token.back() == '"') token = token.substr(1, token.size() - 2);
-    tokens.push_back(token);
+    const char* quote = *at == '"' ? std::find(at + 1, end, '"') : end;
+    if (quote != end) {
+      tokens.emplace_back(start + 1, static_cast<std::size_t>(quote - start - 1));
+      at = quote + 1;
+    } else {
+      while (at < end && !isBlank(*at) && !isSeparator(*at)) ++at;
+      tokens.emplace_back(start, static_cast<std::size_t>(at - start));
+    }
     skipBlanks();
     if (at < end && isSeparator(*at)) {
       ++at;
@@ -116,16 +120,26 @@ bool parseInteger(std::string_view token, std::int64_t& value) { return parse(to
 
 bool storeNumber(std::string_view token, ScalarType type, std::byte* out) {
   switch (type) {
-    case ScalarType::u8: return storeInteger<std::uint8_t>(token, out);
-    case ScalarType::i8: return storeInteger<std::int8_t>(token, out);
-    case ScalarType::u16: return storeInteger<std::uint16_t>(token, out);
-    case ScalarType::i16: return storeInteger<std::int16_t>(token, out);
-    case ScalarType::u32: return storeInteger<std::uint32_t>(token, out);
-    case ScalarType::i32: return storeInteger<std::int32_t>(token, out);
-    case ScalarType::u64: return storeInteger<std::uint64_t>(token, out);
-    case ScalarType::i64: return storeInteger<std::int64_t>(token, out);
-    case ScalarType::f32: return storeFloat<float>(token, out);
-    case ScalarType::f64: return storeFloat<double>(token, out);
+    case ScalarType::u8:
+      return storeInteger<std::uint8_t>(token, out);
+    case ScalarType::i8:
+      return storeInteger<std::int8_t>(token, out);
+    case ScalarType::u16:
+      return storeInteger<std::uint16_t>(token, out);
+    case ScalarType::i16:
+      return storeInteger<std::int16_t>(token, out);
+    case ScalarType::u32:
+      return storeInteger<std::uint32_t>(token, out);
+    case ScalarType::i32:
+      return storeInteger<std::int32_t>(token, out);
+    case ScalarType::u64:
+      return storeInteger<std::uint64_t>(token, out);
+    case ScalarType::i64:
+      return storeInteger<std::int64_t>(token, out);
+    case ScalarType::f32:
+      return storeFloat<float>(token, out);
+    case ScalarType::f64:
+      return storeFloat<double>(token, out);
   }
   return false;
 }
@@ -159,6 +173,39 @@ bool pickColumns(const std::vector<std::string_view>& tokens, const TextTable& t
     picked[c] = {};
   }
   return true;
+}
+
+bool LineParser::parse(std::string_view line) {
+  splitColumns(line, tokens_);
+  badColumn_ = -1;
+  if (!pickColumns(tokens_, table_, picked_)) return false;
+  for (std::size_t c = 0; c < picked_.size(); ++c) {
+    const TextColumn& column = table_.columns[c];
+    if (column.kind == TextColumn::Kind::skip || column.kind == TextColumn::Kind::list) continue;
+    const Field& field = table_.fields[column.field];
+    std::byte* out = record_.data() + field.offset + column.value * scalarBytes(field.type);
+    const bool stored = column.kind == TextColumn::Kind::packed ? storeNumber(picked_[c], ScalarType::u32, out) ||
+                                                                      storeNumber(picked_[c], ScalarType::i32, out) ||
+                                                                      storeNumber(picked_[c], ScalarType::f32, out)
+                                                                : storeNumber(picked_[c], field.type, out);
+    if (stored) continue;
+    badColumn_ = static_cast<int>(c);
+    return false;
+  }
+  return true;
+}
+
+std::string LineParser::fault() const {
+  if (badColumn_ < 0)
+    return "found " + std::to_string(tokens_.size()) + " columns (expected " + std::to_string(table_.columns.size()) +
+           ")";
+  const auto c = static_cast<std::size_t>(badColumn_);
+  std::string shown;
+  for (const char letter : picked_[c].substr(0, 32)) shown += letter >= ' ' && letter < 127 ? letter : '?';
+  const ScalarType type = table_.fields[table_.columns[c].field].type;
+  const bool real = type == ScalarType::f32 || type == ScalarType::f64;
+  return "column " + std::to_string(c + 1) + ": found '" + shown + "' (expected " +
+         (real ? "a number" : "a value of type " + std::string(scalarName(type))) + ")";
 }
 
 }  // namespace strata

@@ -31,10 +31,10 @@ class LineReader {
   bool fill();
 
   const ByteSource& bytes_;
-  std::uint64_t next_;        ///< file offset of what follows the buffer
+  std::uint64_t next_;  ///< file offset of what follows the buffer
   std::uint64_t end_;
   std::vector<char> buffer_;
-  std::size_t at_ = 0;        ///< start of the next line in the buffer
+  std::size_t at_ = 0;  ///< start of the next line in the buffer
   std::uint64_t count_ = 0;
 };
 
@@ -76,7 +76,7 @@ class LineParser {
   std::vector<std::byte> record_;
   std::vector<std::string_view> tokens_;
   std::vector<std::string_view> picked_;
-  int badColumn_ = -1;   ///< of `picked_`; -1 = too few columns
+  int badColumn_ = -1;  ///< of `picked_`; -1 = too few columns
 };
 
 }  // namespace strata

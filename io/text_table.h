@@ -17,26 +17,26 @@ namespace strata {
 struct TextColumn {
   enum class Kind : std::uint8_t {
     skip,
-    value,    ///< a number of the field
-    packed,   ///< a colour of 4 bytes, written as an integer or as the float that has its bits
-    list      ///< a count n and n more columns, none of them kept (PLY)
+    value,   ///< a number of the field
+    packed,  ///< a colour of 4 bytes, written as an integer or as the float that has its bits
+    list     ///< a count n and n more columns, none of them kept (PLY)
   };
   Kind kind = Kind::value;
-  std::size_t field = 0;   ///< index into TextTable::fields
-  std::size_t value = 0;   ///< index of the value within the field
+  std::size_t field = 0;  ///< index into TextTable::fields
+  std::size_t value = 0;  ///< index of the value within the field
 };
 
 /// Points as lines of numbers within a file: the body of text scans and of ascii PLY and PCD.
 struct TextTable {
-  std::vector<TextColumn> columns;   ///< a line may have more, they are ignored
-  std::vector<Field> fields;         ///< of the record that a line becomes
+  std::vector<TextColumn> columns;  ///< a line may have more, they are ignored
+  std::vector<Field> fields;        ///< of the record that a line becomes
   std::size_t recordBytes = 0;
-  bool comments = false;             ///< lines that start with # or // are none
-  bool countLines = false;           ///< lines of a single integer are none (PTS, one before each scan)
-  bool skipDamaged = false;          ///< lines that cannot be read are left out instead of refused
-  std::uint64_t begin = 0;           ///< bytes of the file, both at line starts
+  bool comments = false;     ///< lines that start with # or // are none
+  bool countLines = false;   ///< lines of a single integer are none (PTS, one before each scan)
+  bool skipDamaged = false;  ///< lines that cannot be read are left out instead of refused
+  std::uint64_t begin = 0;   ///< bytes of the file, both at line starts
   std::uint64_t end = 0;
-  std::uint64_t firstLine = 1;       ///< number of the line at `begin`
+  std::uint64_t firstLine = 1;  ///< number of the line at `begin`
 };
 
 /// The range of bytes that one reader takes, at line starts.
@@ -45,22 +45,22 @@ struct TextPart {
   std::uint64_t end = 0;
   std::uint64_t firstLine = 1;
   std::uint64_t points = 0;
-  std::uint64_t damaged = 0;   ///< lines left out
+  std::uint64_t damaged = 0;  ///< lines left out
 };
 
 /// How the values of a column are written, over the whole table.
 struct ColumnSurvey {
   FieldRange range;
-  bool integers = true;    ///< no value has a decimal point, an exponent or is not finite
-  int digits = 0;          ///< most significant digits in a value
-  int decimals = 0;        ///< most digits behind the decimal point, without zeros at the end, exponents counted in
+  bool integers = true;  ///< no value has a decimal point, an exponent or is not finite
+  int digits = 0;        ///< most significant digits in a value
+  int decimals = 0;      ///< most digits behind the decimal point, without zeros at the end, exponents counted in
 };
 
 /// What one pass over the table finds.
 struct TextSurvey {
   std::vector<TextPart> parts;
-  std::vector<ColumnSurvey> columns;   ///< one a column
-  Box bounds;                          ///< of the points whose coordinates are all finite
+  std::vector<ColumnSurvey> columns;  ///< one a column
+  Box bounds;                         ///< of the points whose coordinates are all finite
   std::uint64_t points = 0;
   std::uint64_t damaged = 0;
 };
