@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kVlrHeader = 54;
 constexpr std::size_t kEvlrHeader = 60;
-constexpr std::size_t kHeaderBytes[5] = {227, 227, 227, 235, 375};   // by versionMinor
+constexpr std::size_t kHeaderBytes[5] = {227, 227, 227, 235, 375};  // by versionMinor
 constexpr std::size_t kLargestVlrPayload = 65535;
 constexpr std::uint16_t kFormatBytes[kLasLastFormat + 1] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr std::uint8_t kCompressedBit = 0x80;
@@ -56,9 +56,7 @@ std::size_t characterBytes(std::string_view text) {
   return code < kSmallest[size] || code > 0x10ffff || surrogate ? 0 : size;
 }
 
-std::string versionText(unsigned major, unsigned minor) {
-  return std::to_string(major) + "." + std::to_string(minor);
-}
+std::string versionText(unsigned major, unsigned minor) { return std::to_string(major) + "." + std::to_string(minor); }
 
 /// Magic, version, sizes and offsets: what decides where all other fields are.
 void checkFrame(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes) {
@@ -115,7 +113,8 @@ void readGrid(const std::string& file, std::span<const std::byte> bytes, LasHead
       throw Error(file, "unusable scale factor, found " + std::to_string(header.scale[axis]) +
                             " (expected a finite number other than 0)");
     if (!std::isfinite(header.offset[axis]))
-      throw Error(file, "unusable offset, found " + std::to_string(header.offset[axis]) + " (expected a finite number)");
+      throw Error(file,
+                  "unusable offset, found " + std::to_string(header.offset[axis]) + " (expected a finite number)");
   }
   for (int axis = 0; axis < 3; ++axis)
     if (!std::isfinite(header.bounds.min[axis]) || !std::isfinite(header.bounds.max[axis])) header.bounds = Box();
@@ -141,6 +140,22 @@ void readEvlrs(const ByteSource& file, LasHead& head) {
     }
     at += size;
   }
+}
+
+void appendData(std::vector<std::byte>& bytes, const LasMeta::Vlr& vlr) {
+  const auto at = static_cast<std::ptrdiff_t>(bytes.size());
+  bytes.resize(bytes.size() + vlr.data.size());
+  std::ranges::copy(std::as_bytes(std::span(vlr.data)), bytes.begin() + at);
+}
+
+void appendVlr(std::vector<std::byte>& bytes, const LasMeta::Vlr& vlr) {
+  const std::size_t at = bytes.size();
+  bytes.resize(at + kVlrHeader);
+  storeText(bytes, at + 2, 16, vlr.userId);
+  store<std::uint16_t>(bytes, at + 18, vlr.recordId);
+  store<std::uint16_t>(bytes, at + 20, static_cast<std::uint16_t>(vlr.data.size()));
+  storeText(bytes, at + 22, 32, vlr.description);
+  appendData(bytes, vlr);
 }
 
 }  // namespace
@@ -246,18 +261,9 @@ std::vector<std::byte> encodeLasHead(const std::string& file, const LasMeta& met
 
   std::uint32_t vlrCount = 0, evlrCount = 0;
   for (const LasMeta::Vlr& vlr : vlrs) {
-    if (vlr.data.size() > kLargestVlrPayload) {
-      ++evlrCount;
-      continue;
-    }
-    ++vlrCount;
-    const std::size_t at = bytes.size();
-    bytes.resize(at + kVlrHeader + vlr.data.size());
-    storeText(bytes, at + 2, 16, vlr.userId);
-    store<std::uint16_t>(bytes, at + 18, vlr.recordId);
-    store<std::uint16_t>(bytes, at + 20, static_cast<std::uint16_t>(vlr.data.size()));
-    storeText(bytes, at + 22, 32, vlr.description);
-    std::memcpy(bytes.data() + at + kVlrHeader, vlr.data.data(), vlr.data.size());
+    const bool extended = vlr.data.size() > kLargestVlrPayload;
+    if (!extended) appendVlr(bytes, vlr);
+    ++(extended ? evlrCount : vlrCount);
   }
   if (wide) {
     store<std::uint64_t>(bytes, 235, evlrCount != 0 ? totals.evlrStart : 0);
@@ -278,12 +284,12 @@ std::vector<std::byte> encodeEvlrs(const std::vector<LasMeta::Vlr>& vlrs) {
   for (const LasMeta::Vlr& vlr : vlrs) {
     if (vlr.data.size() <= kLargestVlrPayload) continue;
     const std::size_t at = bytes.size();
-    bytes.resize(at + kEvlrHeader + vlr.data.size());
+    bytes.resize(at + kEvlrHeader);
     storeText(bytes, at + 2, 16, vlr.userId);
     store<std::uint16_t>(bytes, at + 18, vlr.recordId);
     store<std::uint64_t>(bytes, at + 20, vlr.data.size());
     storeText(bytes, at + 28, 32, vlr.description);
-    std::memcpy(bytes.data() + at + kEvlrHeader, vlr.data.data(), vlr.data.size());
+    appendData(bytes, vlr);
   }
   return bytes;
 }

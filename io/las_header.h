@@ -37,7 +37,7 @@ struct LasHeader {
   std::uint32_t evlrCount = 0;
 };
 
-inline constexpr std::size_t kLasLargestHeader = 375;   ///< bytes, of version 1.4
+inline constexpr std::size_t kLasLargestHeader = 375;  ///< bytes, of version 1.4
 inline constexpr int kLasLastFormat = 10;
 
 /// Bytes of a record of this point format without extra bytes.
@@ -66,7 +66,7 @@ LasHead readLasHead(const ByteSource& file);
 /// What the writer has to know beyond LasMeta.
 struct LasTotals {
   std::uint64_t points = 0;
-  std::array<std::uint64_t, 16> byReturn{};   ///< [n]: points of return number n; [0] is not written
+  std::array<std::uint64_t, 16> byReturn{};  ///< [n]: points of return number n; [0] is not written
   Box bounds;
   std::uint64_t evlrStart = 0;
 };

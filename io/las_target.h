@@ -16,13 +16,13 @@ struct LasTarget {
     std::size_t from, to, bytes;
   };
 
-  LasMeta meta;                    ///< of the file, its VLRs included but for LASzip's
+  LasMeta meta;  ///< of the file, its VLRs included but for LASzip's
   LasRecordFormat format;
   std::vector<Copy> copies;
-  bool sameRecords = false;        ///< packed records are the store's as they are
-  int rankAt = -1;                 ///< in the store's record: degrees to be turned into a scan angle at angleAt
+  bool sameRecords = false;  ///< packed records are the store's as they are
+  int rankAt = -1;           ///< in the store's record: degrees to be turned into a scan angle at angleAt
   std::size_t angleAt = 0;
-  glm::i64vec3 shift{0};           ///< integer of the file = integer of the store + shift
+  glm::i64vec3 shift{0};  ///< integer of the file = integer of the store + shift
 };
 
 /// The source's own format, records and grid where the points fit them; else the smallest of formats 6, 7, 8.

@@ -16,9 +16,9 @@ namespace strata {
 
 /// Consecutive chunks of equal size, but for the last one. LASzip decodes them as one stream.
 struct LazRun {
-  std::vector<std::uint64_t> chunkEnds;   ///< in the file; empty where there is no chunk table
-  std::uint64_t begin = 0, end = 0;       ///< bytes in the file
-  std::uint64_t chunkPoints = 0;          ///< of every chunk but the last; 0 for a stream without chunks
+  std::vector<std::uint64_t> chunkEnds;  ///< in the file; empty where there is no chunk table
+  std::uint64_t begin = 0, end = 0;      ///< bytes in the file
+  std::uint64_t chunkPoints = 0;         ///< of every chunk but the last; 0 for a stream without chunks
   std::uint64_t points = 0;
 };
 

@@ -12,14 +12,14 @@ namespace strata {
 /// What the LASzip record says of how points are compressed; checked against the header, so that the LASzip library
 /// can be trusted with it.
 struct LazFormat {
-  static constexpr std::uint16_t kPointwise = 1;        ///< one stream without chunks
+  static constexpr std::uint16_t kPointwise = 1;  ///< one stream without chunks
   static constexpr std::uint16_t kChunked = 2;
   static constexpr std::uint16_t kLayeredChunked = 3;
   static constexpr std::uint32_t kVariableChunks = 0xffffffffu;
 
   std::uint16_t compressor = kChunked;
-  std::uint32_t chunkSize = 0;           ///< points, kVariableChunks = the chunk table says; 0 for kPointwise
-  std::vector<std::uint8_t> record;      ///< the LASzip record itself
+  std::uint32_t chunkSize = 0;       ///< points, kVariableChunks = the chunk table says; 0 for kPointwise
+  std::vector<std::uint8_t> record;  ///< the LASzip record itself
 };
 
 /// Throws Error, naming `file`, when `head` has no LASzip record or one that does not fit its header.
@@ -30,9 +30,9 @@ std::vector<std::uint8_t> withChunkSize(const LazFormat& format, std::uint32_t c
 
 /// Points that are compressed together, so decoding can start here.
 struct LazChunk {
-  std::uint64_t offset = 0;      ///< in the file
+  std::uint64_t offset = 0;  ///< in the file
   std::uint64_t bytes = 0;
-  std::uint64_t points = 0;      ///< for chunks of equal size the last one's may be an overestimate
+  std::uint64_t points = 0;  ///< for chunks of equal size the last one's may be an overestimate
 };
 
 /// Where the chunk table is: after the 8 bytes at the start of point data, or in the last 8 bytes of the file.
