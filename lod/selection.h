@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/node_data.h"
+#include "core/view.h"
+#include "io/store.h"
+
+namespace strata {
+
+struct SelectionOptions {
+  double pointsPerPixel = 1.0;             ///< wanted density on the screen, for one layer of surface
+  std::uint64_t pointBudget = 10'000'000;  ///< never more points than this; kMaxPointBudget at most
+  double minimumPixels = 1.0;              ///< nodes whose longest side is shorter than this are left to their parents
+
+  static constexpr std::uint64_t kMaxPointBudget = 0xfffffffeu;  ///< point ids of a frame have 32 bits
+
+  bool operator==(const SelectionOptions&) const = default;
+};
+
+struct SelectedNode {
+  std::uint32_t node = 0;                   ///< index in the Hierarchy
+  std::uint32_t pointCount = 0;             ///< prefix of the node's level order
+  float priority = 0.0f;                    ///< how many times too few points its parents alone would put there; >= 1
+  Precision precision = Precision::full30;  ///< that drawing needs: half a pixel (Schütz 2022, 3.3)
+};
+
+/// The result, and the memory of the walk, so that a Selection used again allocates nothing.
+struct Selection {
+  std::vector<SelectedNode> nodes;  ///< most urgent first; parents before their children
+  std::uint64_t pointCount = 0;     ///< sum over nodes
+  std::uint32_t tested = 0;         ///< contours looked at
+  bool budgetReached = false;
+
+  struct Candidate {
+    SelectedNode selected;
+    double density = 0.0;  ///< points a square metre, the node's own and its parents', when drawn whole
+  };
+  std::vector<Candidate> heap;  ///< scratch
+};
+
+/// Chooses what to draw for a view, best first, as Kanzok 2015, 3.2.2 with the layered density of 3.1: the contour's
+/// projected area in pixels times the wanted points a pixel is the number of points, less what its ancestors put there
+/// already. With q = pointsPerPixel, p = pixels a metre at the contour's nearest visible point, facing = silhouette /
+/// largest face of the contour, spacing s and N points in the node:
+///
+///   wanted      W = q p² facing                points a square metre of the surface
+///   node's own  1/σ²,  σ² = min(s², faceArea/N)   density of the whole node (Kanzok's area bounds it)
+///   given       D = sum of 1/σ² over the ancestors
+///   taken when  W > D;  points = N clamp((W - D) σ², 1/N, 1);  priority = W / D
+///
+/// (linear nodes: the same along their length, N (√W - √D) σ.) The count is continuous in the view: a child enters
+/// with its first point. Pure; the same arguments give the same result on any machine with IEEE doubles. Never throws.
+///
+/// `reach` is HierarchyIndex::reach, or empty for stores whose contours hold everything below them.
+void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
+                 const SelectionOptions& options, Selection& out);
+void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out);
+
+}  // namespace strata

@@ -1,0 +1,286 @@
+#include "lod/streamer.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "lod/contour.h"
+
+namespace strata {
+namespace {
+
+/// Beside the one that each loader fills: Kanzok's queues of five with one loader.
+constexpr std::size_t kExtraBuffers = 4;
+
+std::size_t loaderCount(const StreamerOptions& options) {
+  return static_cast<std::size_t>(std::max(options.loaderThreads, 1));
+}
+
+}  // namespace
+
+double StreamerStats::hitRate() const {
+  const std::uint64_t wanted = cacheHits + cacheMisses;
+  return wanted == 0 ? 1.0 : static_cast<double>(cacheHits) / static_cast<double>(wanted);
+}
+
+Streamer::Streamer(std::shared_ptr<const Store> store, const StreamerOptions& options)
+    : store_(std::move(store)),
+      index_(indexHierarchy(store_->hierarchy())),
+      buffers_(loaderCount(options) + kExtraBuffers),
+      cache_(options.cacheBytes, index_.parent),
+      builder_(*store_, index_.parent, cache_) {
+  newest_.selection = options.selection;
+  for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<NodeData>());
+  for (std::size_t i = 0; i < loaderCount(options); ++i)
+    loaders_.emplace_back([this](std::stop_token stop) { loaderLoop(stop); });
+  lodThread_ = std::jthread([this](std::stop_token stop) { lodLoop(stop); });
+}
+
+Streamer::~Streamer() {
+  lodThread_.request_stop();
+  for (std::jthread& loader : loaders_) loader.request_stop();
+  queue_.stop();
+}
+
+// --- any thread
+
+void Streamer::setView(const View& view) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (viewKnown_ && newest_.view == view) return;
+    newest_.view = view;
+    viewKnown_ = true;
+    ++newest_.generation;
+  }
+  lodWake_.notify_one();
+}
+
+void Streamer::setSelection(const SelectionOptions& selection) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (newest_.selection == selection) return;
+    newest_.selection = selection;
+    ++newest_.generation;
+  }
+  lodWake_.notify_one();
+}
+
+bool Streamer::complete() const {
+  const std::lock_guard lock(mutex_);
+  return viewKnown_ && doneGeneration_ == newest_.generation && !donePending_;
+}
+
+View Streamer::newestView() const {
+  const std::lock_guard lock(mutex_);
+  return newest_.view;
+}
+
+void Streamer::nodesChanged() {
+  {
+    const std::lock_guard lock(mutex_);
+    nodesChanged_ = true;
+  }
+  lodWake_.notify_one();
+}
+
+void Streamer::somethingHappened() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++events_;
+  }
+  progress_.notify_all();
+}
+
+StreamerStats Streamer::stats() const {
+  const NodeCacheStats cache = cache_.stats();
+  StreamerStats s;
+  s.nodesLoaded = counters_.nodesLoaded.load(std::memory_order_relaxed);
+  s.bytesRead = counters_.bytesRead.load(std::memory_order_relaxed);
+  s.failures = failed_.failures();
+  s.nodesGivenUp = failed_.givenUp();
+  s.loadsDropped = counters_.loadsDropped.load(std::memory_order_relaxed);
+  s.cacheHits = counters_.cacheHits.load(std::memory_order_relaxed);
+  s.cacheMisses = counters_.cacheMisses.load(std::memory_order_relaxed);
+  s.evictions = cache.evictions;
+  s.refusals = cache.refusals;
+  s.duplicates = cache.duplicates;
+  s.overCapacity = counters_.overCapacity.load(std::memory_order_relaxed);
+  s.lodPasses = counters_.lodPasses.load(std::memory_order_relaxed);
+  s.lodMs = 1e-6 * static_cast<double>(counters_.lodNs.load(std::memory_order_relaxed));
+  if (s.lodPasses > 0)
+    s.lodMsMean = 1e-6 * static_cast<double>(counters_.lodNsTotal.load(std::memory_order_relaxed)) /
+                  static_cast<double>(s.lodPasses);
+  s.queueLength = queue_.size();
+  s.residentBytes = cache.residentBytes;
+  s.peakResidentBytes = cache.peakBytes;
+  s.residentNodes = cache.residentNodes;
+  return s;
+}
+
+// --- LOD thread
+
+void Streamer::lodLoop(std::stop_token stop) {
+  std::uint64_t lastGeneration = 0;
+  while (true) {
+    Task task;
+    {
+      std::unique_lock lock(mutex_);
+      const bool woken = lodWake_.wait(
+          lock, stop, [&] { return viewKnown_ && (newest_.generation != lastGeneration || nodesChanged_); });
+      if (!woken || stop.stop_requested()) return;
+      task = newest_;
+      nodesChanged_ = false;
+    }
+    runPass(task, task.generation != lastGeneration);
+    lastGeneration = task.generation;
+  }
+}
+
+void Streamer::runPass(const Task& task, bool isNewView) {
+  const auto start = std::chrono::steady_clock::now();
+  selectNodes(store_->hierarchy(), index_.reach, task.view, task.selection, selection_);
+  failed_.copyIfNewer(attempts_, attemptsVersion_);
+  const ListBuilder::Result built = builder_.build(selection_, attempts_, back_, requests_);
+  back_.list.view = task.view;
+  back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
+  const bool pending = !requests_.empty();
+  queue_.replace(requests_);
+  publish(back_);
+
+  const auto ns = static_cast<std::uint64_t>(
+      std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now() - start).count());
+  counters_.lodNs.store(ns, std::memory_order_relaxed);
+  counters_.lodNsTotal.fetch_add(ns, std::memory_order_relaxed);
+  counters_.lodPasses.fetch_add(1, std::memory_order_relaxed);
+  if (isNewView) {
+    counters_.cacheHits.fetch_add(built.resident, std::memory_order_relaxed);
+    counters_.cacheMisses.fetch_add(built.absent, std::memory_order_relaxed);
+    counters_.overCapacity.fetch_add(built.overCapacity, std::memory_order_relaxed);
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    doneGeneration_ = task.generation;
+    donePending_ = pending;
+  }
+  somethingHappened();
+}
+
+void Streamer::publish(PinnedList& list) {
+  {
+    const std::lock_guard lock(listMutex_);
+    std::swap(ready_, list);
+    readyIsNew_ = true;
+  }
+  // What comes back is an older list that no frame was drawn from, or an empty one.
+  releaseList(list, lodReleased_);
+  lodReleased_.clear();
+}
+
+void Streamer::releaseList(PinnedList& list, std::vector<NodeCache::Data>& out) {
+  list.list.items.clear();  // before the pins: an evicted node's memory is used again when nobody else has it
+  cache_.unpin(list.pins, out);
+  list.pins.clear();
+}
+
+// --- loader threads
+
+void Streamer::loaderLoop(std::stop_token stop) {
+  NodeLoader loader(*store_);
+  while (std::unique_ptr<NodeData> buffer = transfer_.takeEmpty(stop)) {
+    while (buffer != nullptr) {
+      const std::optional<LoadRequest> request = queue_.pop(stop);
+      if (!request || !loadOne(loader, *request, stop, buffer)) return;
+    }
+  }
+}
+
+/// Leaves the buffer where it is when the node did not come to fill it. False when stopped.
+bool Streamer::loadOne(NodeLoader& loader, const LoadRequest& request, std::stop_token stop,
+                       std::unique_ptr<NodeData>& buffer) {
+  const NodeRecord& record = store_->hierarchy().nodes[request.node];
+  if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision)) {
+    queue_.finish(request.node);  // came between the LOD pass's look into the cache and its new queue
+    return true;
+  }
+  const double reach = static_cast<double>(index_.reach[request.node]);
+  if (!contourInView(contourOf(record), reach, ViewVolume(newestView()))) {
+    counters_.loadsDropped.fetch_add(1, std::memory_order_relaxed);
+    queue_.release(request.node);
+    return true;
+  }
+  try {
+    if (!loader.load(request.node, request.precision, stop, *buffer)) return false;
+    counters_.nodesLoaded.fetch_add(1, std::memory_order_relaxed);
+    counters_.bytesRead.fetch_add(record.drawBytes[static_cast<int>(request.precision) - 1], std::memory_order_relaxed);
+    transfer_.giveFilled({request.node, std::move(buffer)});
+  } catch (const std::exception& error) {
+    failed_.add(request.node, error.what());
+    queue_.finish(request.node);
+    nodesChanged();
+  }
+  somethingHappened();
+  return true;
+}
+
+// --- render thread
+
+const RenderList& Streamer::beginFrame() {
+  takeLoadedNodes();
+  bool swapped = false;
+  {
+    const std::lock_guard lock(listMutex_);
+    if (readyIsNew_) {
+      std::swap(front_, ready_);
+      std::swap(old_, ready_);
+      readyIsNew_ = false;
+      swapped = true;
+    }
+  }
+  if (swapped) releaseList(old_, released_);
+  recycle();
+  return front_.list;
+}
+
+void Streamer::takeLoadedNodes() {
+  loaded_.clear();
+  transfer_.takeFilled(loaded_);
+  if (loaded_.empty()) return;
+  for (LoadedNode& loaded : loaded_) {
+    cache_.insert(loaded.node, std::move(loaded.data), released_);
+    queue_.finish(loaded.node);
+  }
+  recycle();
+  for (std::size_t i = 0; i < loaded_.size(); ++i) {
+    if (spare_.empty()) spare_.push_back(std::make_unique<NodeData>());
+    transfer_.giveEmpty(std::move(spare_.back()));
+    spare_.pop_back();
+  }
+  nodesChanged();
+}
+
+void Streamer::recycle() {
+  for (NodeCache::Data& data : released_) {
+    // The nodes were made as NodeData, see takeLoadedNodes(). A new object around the old vectors: who still has a
+    // weak_ptr to the evicted node must not see another node's points.
+    if (data.use_count() == 1 && spare_.size() < buffers_)
+      spare_.push_back(std::make_unique<NodeData>(std::move(const_cast<NodeData&>(*data))));
+  }
+  released_.clear();
+}
+
+bool Streamer::waitUntilComplete(std::chrono::milliseconds timeout) {
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  while (true) {
+    std::uint64_t seen = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      seen = events_;
+    }
+    beginFrame();
+    if (complete()) return true;
+    std::unique_lock lock(mutex_);
+    if (!progress_.wait_until(lock, deadline, [&] { return events_ != seen; })) return false;
+  }
+}
+
+}  // namespace strata

@@ -1,0 +1,35 @@
+#include "lod/transfer_queues.h"
+
+#include <iterator>
+#include <utility>
+
+namespace strata {
+
+void TransferQueues::giveEmpty(std::unique_ptr<NodeData> buffer) {
+  {
+    const std::lock_guard lock(mutex_);
+    empty_.push_back(std::move(buffer));
+  }
+  emptyGiven_.notify_one();
+}
+
+std::unique_ptr<NodeData> TransferQueues::takeEmpty(std::stop_token stop) {
+  std::unique_lock lock(mutex_);
+  if (!emptyGiven_.wait(lock, stop, [this] { return !empty_.empty(); })) return nullptr;
+  std::unique_ptr<NodeData> buffer = std::move(empty_.back());
+  empty_.pop_back();
+  return buffer;
+}
+
+void TransferQueues::giveFilled(LoadedNode loaded) {
+  const std::lock_guard lock(mutex_);
+  filled_.push_back(std::move(loaded));
+}
+
+void TransferQueues::takeFilled(std::vector<LoadedNode>& out) {
+  const std::lock_guard lock(mutex_);
+  std::move(filled_.begin(), filled_.end(), std::back_inserter(out));
+  filled_.clear();
+}
+
+}  // namespace strata
