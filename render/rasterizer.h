@@ -6,6 +6,7 @@
 
 #include "core/frame.h"
 #include "core/render_list.h"
+#include "render/gl_context.h"
 
 namespace strata {
 
@@ -44,5 +45,11 @@ struct RasterizerOptions {
   std::uint64_t gpuBytes = std::uint64_t{1} << 30;  ///< cap on node data held by the GPU
   std::uint64_t uploadBytesPerFrame = std::uint64_t{64} << 20;
 };
+
+/// Takes over `context`; null will do for cpu, which lets go of one it is given. `automatic` is cpu where there is no
+/// context or OpenGL runs on the CPU or lacks what compute32 needs, else compute32. Throws Error where the backend
+/// cannot work with the context.
+std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
+                                             std::unique_ptr<GlContext> context);
 
 }  // namespace strata

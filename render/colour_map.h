@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+
+#include "core/frame.h"
+
+namespace strata {
+
+/// R | G<<8 | B<<16 | 255<<24.
+std::uint32_t packColour(int red, int green, int blue);
+
+/// Dark violet to yellow, its lightness rising evenly. `t` is clamped to [0, 1].
+std::uint32_t elevationColour(double t);
+/// Of the ASPRS standard classes (LAS 1.4 R15, table 17); grey for the reserved ones.
+std::uint32_t classificationColour(std::uint8_t classification);
+/// Tells neighbouring levels apart; repeats after eight.
+std::uint32_t levelColour(int level);
+
+/// Where a node lacks the attribute that is asked for.
+std::uint32_t missingColour();
+
+}  // namespace strata

@@ -1,0 +1,40 @@
+#include "render/gl_functions.h"
+
+#include <cstring>
+
+#include "core/error.h"
+
+namespace strata {
+
+GlFunctions loadGlFunctions(GlContext& context) {
+  GlFunctions functions;
+  const char* missing = nullptr;
+  const auto load = [&](auto& function, const char* name) {
+    function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(context.getProc(name));
+    if (function == nullptr && std::strcmp(name, "glClipControl") != 0) missing = name;
+  };
+#define STRATA_GL_LOAD(result, name, parameters) load(functions.name, "gl" #name);
+  STRATA_GL_FUNCTIONS(STRATA_GL_LOAD)
+#undef STRATA_GL_LOAD
+  if (missing != nullptr) throw Error("OpenGL", std::string("function is missing, found no ") + missing);
+  int major = 0, minor = 0;
+  functions.GetIntegerv(gl::kMajorVersion, &major);
+  functions.GetIntegerv(gl::kMinorVersion, &minor);
+  if (major * 10 + minor < 43)
+    throw Error("OpenGL", "version is too old, found " + std::to_string(major) + "." + std::to_string(minor) +
+                              " (expected 4.3 or newer)");
+  return functions;
+}
+
+std::string glRenderer(const GlFunctions& functions) {
+  const unsigned char* text = functions.GetString(gl::kRenderer);
+  return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);
+}
+
+bool isSoftwareRenderer(const std::string& renderer) {
+  for (const char* name : {"llvmpipe", "softpipe", "swrast", "Software Rasterizer", "SwiftShader"})
+    if (renderer.find(name) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace strata

@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render/gl_functions.h"
+
+namespace strata {
+
+/// Owners of GL names. `functions` outlives them, and the context is current whenever they are used or destroyed.
+
+class GlBuffer {
+ public:
+  GlBuffer(const GlFunctions& functions, std::uint64_t bytes, unsigned usage);
+  ~GlBuffer();
+  GlBuffer(const GlBuffer&) = delete;
+  GlBuffer& operator=(const GlBuffer&) = delete;
+
+  unsigned name() const { return name_; }
+  std::uint64_t bytes() const { return bytes_; }
+  /// Replaces the content and the size.
+  void assign(const void* data, std::uint64_t bytes);
+  void write(std::uint64_t offset, const void* data, std::uint64_t bytes);
+  void read(std::uint64_t offset, void* data, std::uint64_t bytes) const;
+  /// Sets every 32-bit word.
+  void fill(std::uint32_t word);
+  void bindStorage(unsigned binding) const;
+
+ private:
+  const GlFunctions& gl_;
+  const unsigned usage_;
+  unsigned name_ = 0;
+  std::uint64_t bytes_ = 0;
+};
+
+struct ShaderStage {
+  unsigned kind;                         ///< gl::kComputeShader, ...
+  std::vector<std::string_view> files;   ///< names in render/shaders, compiled as one text after the version line
+};
+
+class GlProgram {
+ public:
+  /// Throws Error with the compiler's words, each naming the file and the line, where a stage does not compile.
+  GlProgram(const GlFunctions& functions, const std::vector<ShaderStage>& stages);
+  ~GlProgram();
+  GlProgram(const GlProgram&) = delete;
+  GlProgram& operator=(const GlProgram&) = delete;
+
+  void use() const { gl_.UseProgram(name_); }
+
+ private:
+  const GlFunctions& gl_;
+  unsigned name_ = 0;
+};
+
+/// Turns line numbers of a whole stage into file and line, in messages like `0:10020(3): error` or `0(10020) : error`
+/// (file 1, line 20).
+std::string nameShaderFiles(const std::string& log, const std::vector<std::string_view>& files);
+
+/// Text of one file of render/shaders, built into the program. Throws Error for an unknown name.
+std::string_view shaderText(std::string_view file);
+
+}  // namespace strata

@@ -1,0 +1,14 @@
+#pragma once
+#include "core/frame.h"
+#include "core/render_list.h"
+#include "render/thread_pool.h"
+#include "render/visibility.h"
+
+namespace strata {
+
+/// The second half of every draw: point size, ids to colours, eye-dome lighting. `buffer` is used up; its ids must be
+/// those of `list`.
+void resolveFrame(const RenderList& list, const DrawOptions& options, VisibilityBuffer& buffer, const ThreadPool& pool,
+                  Frame& frame);
+
+}  // namespace strata

@@ -1,0 +1,29 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <vector>
+
+#include "core/frame.h"
+
+namespace strata {
+
+/// One pixel of a visibility buffer: bits of the depth, then the point's id. The smaller value is the one to see
+/// (Schütz 2022, Listing 1).
+using PackedPixel = std::uint64_t;
+
+constexpr PackedPixel packPixel(std::uint32_t depthBits, std::uint32_t id) {
+  return PackedPixel{depthBits} << 32 | id;
+}
+inline constexpr PackedPixel kEmptyPixel = packPixel(0x7f800000u, Frame::kNoPoint);  // +inf, no point
+
+constexpr std::uint32_t pixelId(PackedPixel pixel) { return static_cast<std::uint32_t>(pixel); }
+constexpr float pixelDepth(PackedPixel pixel) { return std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32)); }
+
+/// Row by row from the top.
+struct VisibilityBuffer {
+  int width = 0;
+  int height = 0;
+  std::vector<PackedPixel> pixels;
+};
+
+}  // namespace strata

@@ -1,0 +1,108 @@
+#include "tests/support/oracle.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/batch_plan.h"
+
+namespace strata::test {
+namespace {
+
+constexpr double kEdgePx = 1e-3;
+constexpr double kDepthTie = 1e-6;
+
+struct Projected {
+  double column, row, depth;
+};
+
+Projected project(const Projection& p, const glm::dvec3& position) {
+  const glm::dvec4 d(position - p.eye, 1.0);
+  const double w = glm::dot(p.rowW, d);
+  return {glm::dot(p.rowX, d) / w, glm::dot(p.rowY, d) / w, glm::dot(p.rowDepth, d)};
+}
+
+bool inImage(const Projected& point, const View& view) {
+  return point.depth >= view.nearPlane && point.depth > 0.0 && point.column >= 0.0 && point.column < view.width &&
+         point.row >= 0.0 && point.row < view.height;
+}
+
+/// Calls visit(id, projected) for every point of the list.
+template <typename Visit>
+void forEachPoint(const RenderList& list, const View& view, Visit visit) {
+  const ViewConstants constants = viewConstants(view);
+  std::uint32_t firstId = 0;
+  for (const RenderItem& item : list.items) {
+    for (const Batch& batch : item.node->batches) {
+      const Precision precision = batchPrecision(constants, *item.node, batch);
+      for (std::uint32_t i = 0; i < batch.pointCount && batch.firstPoint + i < item.pointCount; ++i) {
+        const std::uint32_t point = batch.firstPoint + i;
+        visit(firstId + point, project(constants.projection, pointPosition(*item.node, batch, point, precision)));
+      }
+    }
+    firstId += item.pointCount;
+  }
+}
+
+bool explained(const Projected& point, const View& view) {
+  const auto nearEdge = [](double x) { return std::abs(x - std::round(x)) <= kEdgePx; };
+  return nearEdge(point.column) || nearEdge(point.row) ||
+         std::abs(point.depth - view.nearPlane) <= kDepthTie * view.nearPlane;
+}
+
+std::string describe(std::uint32_t id, const Projected& point) {
+  return std::to_string(id) + " at (" + std::to_string(point.column) + ", " + std::to_string(point.row) + ") depth " +
+         std::to_string(point.depth);
+}
+
+}  // namespace
+
+Frame oracleFrame(const RenderList& list, const View& view) {
+  Frame frame;
+  frame.width = view.width;
+  frame.height = view.height;
+  const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  frame.pointId.assign(pixels, Frame::kNoPoint);
+  forEachPoint(list, view, [&](std::uint32_t id, const Projected& point) {
+    if (!inImage(point, view)) return;
+    const std::size_t at = static_cast<std::size_t>(point.row) * static_cast<std::size_t>(view.width) +
+                           static_cast<std::size_t>(point.column);
+    const float depth = static_cast<float>(point.depth);
+    if (depth < frame.depth[at] || (depth == frame.depth[at] && id < frame.pointId[at])) {
+      frame.depth[at] = depth;
+      frame.pointId[at] = id;
+    }
+  });
+  return frame;
+}
+
+Comparison compareToOracle(const RenderList& list, const View& view, const Frame& frame) {
+  const Frame expected = oracleFrame(list, view);
+  std::vector<Projected> points(list.pointCount);
+  forEachPoint(list, view, [&](std::uint32_t id, const Projected& point) { points[id] = point; });
+  Comparison result;
+  for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
+    const std::uint32_t wanted = expected.pointId[i], found = frame.pointId[i];
+    if (wanted == Frame::kNoPoint && found == Frame::kNoPoint) continue;
+    ++result.covered;
+    if (wanted == found) continue;
+    ++result.different;
+    bool known = false;
+    for (const std::uint32_t id : {wanted, found}) known |= id != Frame::kNoPoint && explained(points[id], view);
+    if (wanted != Frame::kNoPoint && found != Frame::kNoPoint && !known) {
+      const double a = points[wanted].depth, b = points[found].depth;
+      known = std::abs(a - b) <= kDepthTie * std::max(a, b);
+    }
+    if (known) continue;
+    if (result.unexplained++ > 0) continue;
+    result.firstUnexplained = "pixel (" + std::to_string(i % static_cast<std::size_t>(view.width)) + ", " +
+                              std::to_string(i / static_cast<std::size_t>(view.width)) + "): wanted ";
+    result.firstUnexplained += wanted == Frame::kNoPoint ? "nothing" : describe(wanted, points[wanted]);
+    result.firstUnexplained += ", found ";
+    result.firstUnexplained += found == Frame::kNoPoint ? "nothing" : describe(found, points[found]);
+  }
+  return result;
+}
+
+}  // namespace strata::test

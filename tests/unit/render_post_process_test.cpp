@@ -1,0 +1,95 @@
+#include "render/post_process.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <random>
+
+namespace strata {
+namespace {
+
+VisibilityBuffer randomBuffer(int width, int height, double filled, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  VisibilityBuffer buffer{width, height, {}};
+  for (int i = 0; i < width * height; ++i) {
+    const float depth = static_cast<float>(1.0 + unit(random));
+    const bool point = unit(random) < filled;
+    buffer.pixels.push_back(point ? packPixel(std::bit_cast<std::uint32_t>(depth), static_cast<std::uint32_t>(i))
+                                  : kEmptyPixel);
+  }
+  return buffer;
+}
+
+TEST(Dilate, GivesEachPixelTheNearestPointWhoseSquareCoversIt) {
+  const ThreadPool pool(2);
+  for (const auto& [width, height] : {std::pair{37, 53}, {1, 40}, {40, 1}, {1, 1}}) {
+    for (int size = 1; size <= 16; ++size) {
+      const VisibilityBuffer before = randomBuffer(width, height, 0.05, static_cast<std::uint32_t>(size));
+      VisibilityBuffer expected{width, height, std::vector<PackedPixel>(before.pixels.size(), kEmptyPixel)};
+      for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column)
+          for (int y = row - (size - 1) / 2; y <= row + size / 2; ++y)
+            for (int x = column - (size - 1) / 2; x <= column + size / 2; ++x) {
+              if (x < 0 || y < 0 || x >= width || y >= height) continue;
+              PackedPixel& target = expected.pixels[static_cast<std::size_t>(y * width + x)];
+              target = std::min(target, before.pixels[static_cast<std::size_t>(row * width + column)]);
+            }
+      VisibilityBuffer found = before;
+      dilate(found, size, pool);
+      EXPECT_EQ(found.pixels, expected.pixels) << width << " x " << height << ", size " << size;
+    }
+  }
+}
+
+Frame flatFrame(int side, float depth) {
+  Frame frame;
+  frame.width = frame.height = side;
+  const auto count = static_cast<std::size_t>(side * side);
+  frame.depth.assign(count, depth);
+  frame.pointId.assign(count, 0);
+  frame.colour.assign(count, 0xff80ff40u);
+  return frame;
+}
+
+TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
+  const ThreadPool pool(1);
+  Frame frame = flatFrame(9, 5.0f);
+  for (std::size_t i = 0; i < 27; ++i) {
+    frame.depth[i] = std::numeric_limits<float>::infinity();
+    frame.pointId[i] = Frame::kNoPoint;
+  }
+  const std::vector<std::uint32_t> before = frame.colour;
+  eyeDomeLighting(frame, 1.0f, pool);
+  EXPECT_EQ(frame.colour, before);
+}
+
+TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
+  const ThreadPool pool(1);
+  Frame frame = flatFrame(9, 5.0f);
+  for (std::size_t i = 0; i < frame.depth.size(); ++i)
+    if (i % 9 >= 5) frame.depth[i] = 6.0f;
+  const std::vector<std::uint32_t> before = frame.colour;
+  eyeDomeLighting(frame, 1.0f, pool);
+  for (std::size_t i = 0; i < frame.colour.size(); ++i) {
+    if (i % 9 == 5)
+      EXPECT_LT(frame.colour[i] & 255u, before[i] & 255u);
+    else
+      EXPECT_EQ(frame.colour[i], before[i]);
+    EXPECT_EQ(frame.colour[i] >> 24, 255u);
+  }
+}
+
+TEST(EyeDomeLighting, DoesNotDependOnTheScaleOfTheScene) {
+  const ThreadPool pool(1);
+  Frame small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
+  small.depth[12] *= 1.125f;
+  large.depth[12] *= 1.125f;
+  eyeDomeLighting(small, 0.3f, pool);
+  eyeDomeLighting(large, 0.3f, pool);
+  EXPECT_EQ(small.colour, large.colour);
+}
+
+}  // namespace
+}  // namespace strata
