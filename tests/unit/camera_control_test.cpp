@@ -1,0 +1,180 @@
+#include "viewer/camera_control.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace strata {
+namespace {
+
+/// A view at UTM coordinates with the eye between 2 and 200 m from the target and no extreme slope.
+View randomView(std::mt19937& random) {
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  View view;
+  view.target = {630000.0 + 500.0 * unit(random), 4850000.0 + 500.0 * unit(random), 100.0 * unit(random)};
+  const glm::dvec3 direction = glm::normalize(glm::dvec3(unit(random), unit(random) + 1.1, 0.8 * unit(random)));
+  view.eye = view.target - direction * (101.0 + 99.0 * unit(random));
+  view.width = 1280;
+  view.height = 720;
+  view.orthographic = unit(random) > 0.5;
+  view.orthographicHeight = 50.0;
+  return view;
+}
+
+glm::dvec2 randomPixel(std::mt19937& random, const View& view) {
+  return {std::uniform_real_distribution<double>(0.0, view.width)(random),
+          std::uniform_real_distribution<double>(0.0, view.height)(random)};
+}
+
+TEST(CameraControl, FindsTheWorldPointOfAPixelAndBack) {
+  std::mt19937 random(1);
+  for (int i = 0; i < 200; ++i) {
+    const View view = randomView(random);
+    const glm::dvec2 pixel = randomPixel(random, view);
+    const glm::dvec3 point = worldPoint(view, pixel, 37.0);
+    EXPECT_NEAR(depthOf(view, point), 37.0, 1e-6);
+    EXPECT_LT(glm::distance(pixelOf(view, point), pixel), 1e-4);
+  }
+}
+
+TEST(CameraControl, OrbitKeepsTheDistanceToThePivotAndToTheTarget) {
+  std::mt19937 random(2);
+  for (int i = 0; i < 200; ++i) {
+    const View view = randomView(random);
+    const glm::dvec3 pivot = worldPoint(view, randomPixel(random, view), 20.0);
+    const View next = orbited(view, pivot, randomPixel(random, view) - glm::dvec2(600.0, 300.0));
+    EXPECT_NEAR(glm::distance(next.eye, pivot), glm::distance(view.eye, pivot), 1e-6);
+    EXPECT_NEAR(glm::distance(next.eye, next.target), glm::distance(view.eye, view.target), 1e-6);
+  }
+}
+
+TEST(CameraControl, OrbitKeepsThePivotAtItsDepthAndTheHorizonLevel) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 200; ++i) {
+    const View view = randomView(random);
+    const glm::dvec3 pivot = worldPoint(view, randomPixel(random, view), 20.0);
+    const View next = orbited(view, pivot, {77.0, -31.0});
+    EXPECT_NEAR(depthOf(next, pivot), 20.0, 1e-6);
+    EXPECT_NEAR(viewBasis(next).right.z, 0.0, 1e-9);
+  }
+}
+
+TEST(CameraControl, OrbitThereAndBackIsTheSameView) {
+  std::mt19937 random(4);
+  for (int i = 0; i < 100; ++i) {
+    const View view = randomView(random);
+    const View back = orbited(orbited(view, view.target, {90.0, 12.0}), view.target, {-90.0, -12.0});
+    EXPECT_LT(glm::distance(back.eye, view.eye), 1e-6);
+  }
+}
+
+TEST(CameraControl, OrbitNeverTipsOver) {
+  View view;
+  view.eye = {0.0, -10.0, 2.0};
+  for (int i = 0; i < 100; ++i) view = orbited(view, glm::dvec3(0.0), {0.0, 50.0});
+  EXPECT_GT(view.eye.z, 9.9);
+  EXPECT_LE(view.eye.y, 0.0);
+  for (int i = 0; i < 100; ++i) view = orbited(view, glm::dvec3(0.0), {0.0, -50.0});
+  EXPECT_LT(view.eye.z, -9.9);
+}
+
+TEST(CameraControl, DraggingRightTurnsTheSceneRight) {
+  View view;
+  view.eye = {0.0, -10.0, 0.0};
+  const glm::dvec3 nearPoint(0.0, -1.0, 0.0);
+  EXPECT_GT(pixelOf(orbited(view, glm::dvec3(0.0), {100.0, 0.0}), nearPoint).x, pixelOf(view, nearPoint).x);
+  EXPECT_GT(pixelOf(orbited(view, glm::dvec3(0.0), {0.0, 100.0}), nearPoint).y, pixelOf(view, nearPoint).y);
+}
+
+TEST(CameraControl, PanMovesTheGrabbedPointWithTheCursor) {
+  std::mt19937 random(5);
+  for (int i = 0; i < 200; ++i) {
+    const View view = randomView(random);
+    const glm::dvec2 from = randomPixel(random, view);
+    const glm::dvec2 to = randomPixel(random, view);
+    const glm::dvec3 grabbed = worldPoint(view, from, 45.0);
+    const View next = panned(view, 45.0, to - from);
+    EXPECT_LT(glm::distance(pixelOf(next, grabbed), to), 1e-4);
+    EXPECT_LT(glm::distance(next.target - next.eye, view.target - view.eye), 1e-8);
+  }
+}
+
+TEST(CameraControl, ZoomKeepsTheAnchorUnderTheCursor) {
+  std::mt19937 random(6);
+  for (int i = 0; i < 200; ++i) {
+    const View view = randomView(random);
+    const glm::dvec2 pixel = randomPixel(random, view);
+    const glm::dvec3 anchor = worldPoint(view, pixel, 30.0);
+    const View next = zoomed(view, anchor, 0.7);
+    EXPECT_LT(glm::distance(pixelOf(next, anchor), pixel), 1e-3);
+    EXPECT_NEAR(glm::distance(next.eye, anchor), 0.7 * glm::distance(view.eye, anchor), 1e-6);
+  }
+}
+
+TEST(CameraControl, ZoomStopsBeforeTheAnchorIsReached) {
+  View view;
+  for (int i = 0; i < 1000; ++i) view = zoomed(view, glm::dvec3(0.0), 0.5);
+  EXPECT_GT(glm::distance(view.eye, view.target), 0.0);
+  EXPECT_LT(glm::distance(zoomed(view, glm::dvec3(0.0), 1e6).eye, glm::dvec3(0.0, -200.0, 0.0)), 200.0);
+}
+
+TEST(CameraControl, AWheelNotchThereAndBackIsTheSameView) {
+  CameraControl control{View{}};
+  const View before = control.view();
+  control.wheel(3.0, {100.0, 200.0}, glm::dvec3(0.3, 0.2, 0.1));
+  EXPECT_LT(glm::distance(control.view().eye, glm::dvec3(0.3, 0.2, 0.1)),
+            glm::distance(before.eye, glm::dvec3(0.3, 0.2, 0.1)));
+  control.wheel(-3.0, {100.0, 200.0}, glm::dvec3(0.3, 0.2, 0.1));
+  EXPECT_LT(glm::distance(control.view().eye, before.eye), 1e-12);
+}
+
+TEST(CameraControl, FlyingForwardIsTowardTheTargetAndFasterWithShift) {
+  View view;
+  view.eye = {0.0, -10.0, 0.0};
+  const View slow = flown(view, {.forward = 1}, 0.1);
+  const View fast = flown(view, {.forward = 1, .fast = true}, 0.1);
+  EXPECT_NEAR(slow.eye.y, -9.5, 1e-9);
+  EXPECT_NEAR(fast.eye.y, -7.5, 1e-9);
+  EXPECT_NEAR(glm::distance(slow.eye, slow.target), 10.0, 1e-9);
+  EXPECT_GT(flown(view, {.right = 1}, 0.1).eye.x, 0.0);
+  EXPECT_GT(flown(view, {.up = 1}, 0.1).eye.z, 0.0);
+}
+
+TEST(CameraControl, StandardViewsShowTheWholeBox) {
+  Box box;
+  box.add(glm::dvec3(630000.0, 4850000.0, 10.0));
+  box.add(glm::dvec3(630400.0, 4850100.0, 60.0));
+  View view;
+  for (const StandardView which : {StandardView::front, StandardView::side, StandardView::top}) {
+    const View seen = standardView(view, box, which);
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 p((corner & 1 ? box.max : box.min).x, (corner & 2 ? box.max : box.min).y,
+                         (corner & 4 ? box.max : box.min).z);
+      const glm::dvec2 pixel = pixelOf(seen, p);
+      EXPECT_TRUE(pixel.x >= 0.0 && pixel.x <= seen.width && pixel.y >= 0.0 && pixel.y <= seen.height);
+    }
+  }
+  EXPECT_GT(standardView(view, box, StandardView::top).eye.z, 60.0);
+  EXPECT_LT(standardView(view, box, StandardView::front).eye.y, 4850000.0);
+  EXPECT_GT(standardView(view, box, StandardView::side).eye.x, 630400.0);
+}
+
+TEST(CameraControl, OrbitingOutOfTheTopViewDoesNotSpinThePicture) {
+  Box box;
+  box.add(glm::dvec3(-1.0));
+  box.add(glm::dvec3(1.0));
+  const View top = standardView(View{}, box, StandardView::top);
+  const View next = orbited(top, top.target, {0.0, -1.0});
+  EXPECT_GT(glm::dot(viewBasis(top).right, viewBasis(next).right), 0.999);
+}
+
+TEST(CameraControl, ADragWithoutAPressDoesNothing) {
+  CameraControl control{View{}};
+  const View before = control.view();
+  control.move({50.0, 50.0});
+  control.release();
+  EXPECT_EQ(control.view(), before);
+}
+
+}  // namespace
+}  // namespace strata

@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "viewer/camera_control.h"
+#include "viewer/detail_place.h"
+#include "viewer/path_maker.h"
+#include "viewer/stills.h"
+
+namespace strata {
+namespace {
+
+/// A flat town at UTM coordinates: ground of 400 x 200 m with blocks of houses and streets between them.
+Scene town() {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 60000; ++i) {
+    const double x = 400.0 * unit(random);
+    const double y = 200.0 * unit(random);
+    const bool house = std::fmod(x, 50.0) > 15.0 && std::fmod(y, 50.0) > 15.0;
+    const double z = house ? 12.0 * std::pow(unit(random), 0.3) : 0.0;
+    points.push_back({630000.0 + x, 4850000.0 + y, 100.0 + z});
+  }
+  return makeScene(std::move(points));
+}
+
+/// A sphere 2 m across.
+Scene statue() {
+  std::mt19937 random(2);
+  std::normal_distribution<double> normal;
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 20000; ++i)
+    points.push_back(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))));
+  return makeScene(std::move(points));
+}
+
+/// Floor, ceiling and four walls.
+Scene room() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 30000; ++i) {
+    glm::dvec3 p(unit(random), unit(random), unit(random));
+    const int face = i % 6;
+    p[face / 2] = face % 2;
+    points.push_back(p * glm::dvec3(6.0, 5.0, 2.7));
+  }
+  return makeScene(std::move(points));
+}
+
+double shareInPicture(const Scene& scene, const View& view) {
+  int seen = 0;
+  for (const glm::dvec3& p : scene.points) {
+    const glm::dvec2 pixel = pixelOf(view, p);
+    seen += depthOf(view, p) > 0.0 && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= view.width &&
+                    pixel.y <= view.height
+                ? 1
+                : 0;
+  }
+  return static_cast<double>(seen) / static_cast<double>(scene.points.size());
+}
+
+TEST(Scene, KnowsARoomFromATownAndAStatue) {
+  EXPECT_TRUE(room().enclosed);
+  EXPECT_FALSE(town().enclosed);
+  EXPECT_FALSE(statue().enclosed);
+}
+
+TEST(Scene, LeavesAFarOutlierOutOfItsBounds) {
+  std::vector<glm::dvec3> points = town().points;
+  points.push_back({0.0, 0.0, 90000.0});
+  EXPECT_LT(makeScene(points).diagonal(), 600.0);
+}
+
+TEST(Scene, SurvivesNoPointOnePointAndOneLine) {
+  EXPECT_GT(makeScene({}).diagonal(), 0.0);
+  EXPECT_GT(makeScene({{5.0, 5.0, 5.0}}).diagonal(), 0.0);
+  const Scene line = makeScene({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}});
+  for (const CameraPath& path : {orbitPath(line), flythroughPath(line), streetPath(line)})
+    EXPECT_NO_THROW(parseCameraPath("p", cameraPathJson(path)));
+}
+
+TEST(Stills, AFittedViewHoldsAllAndTouchesTheEdge) {
+  for (const Scene& scene : {town(), statue(), room()})
+    for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.7) {
+      const View view = fittedView(scene, lookingAt(azimuth, 0.5), 1920, 1080, 0.8);
+      EXPECT_EQ(shareInPicture(scene, view), 1.0);
+      View closer = view;
+      closer.eye += 0.1 * (view.target - view.eye);
+      EXPECT_LT(shareInPicture(scene, closer), 1.0);
+    }
+}
+
+TEST(Stills, TheOverviewFillsThePictureWithAllOfTheScan) {
+  for (const Scene& scene : {town(), statue()}) {
+    const Still still = overviewStill(scene, 1920, 1080);
+    EXPECT_EQ(shareInPicture(scene, still.view), 1.0);
+    EXPECT_GT(compose(scene, still.view, still.subject).coverage, 0.25);
+    EXPECT_GT(still.view.eye.z, scene.bounds.centre().z);
+  }
+}
+
+TEST(Stills, TheOverviewOfARoomIsFromInside) {
+  const Scene scene = room();
+  EXPECT_TRUE(scene.bounds.contains(overviewStill(scene, 1920, 1080).view.eye));
+}
+
+TEST(Stills, PointsGetAsLargeAsTheirDistanceOnTheScreen) {
+  Frame frame;
+  frame.width = 240;
+  frame.height = 240;
+  frame.pointId.assign(240 * 240, Frame::kNoPoint);
+  frame.depth.assign(240 * 240, INFINITY);
+  for (std::size_t y = 0; y < 240; y += 4)
+    for (std::size_t x = 0; x < 240; x += 4) {
+      frame.pointId[y * 240 + x] = 1;
+      frame.depth[y * 240 + x] = 10.0f;
+    }
+  EXPECT_NEAR(frontSpacing(frame), 4.0, 1e-9);
+  // What shines through from behind does not count.
+  for (std::size_t i = 0; i < frame.pointId.size(); i += 7)
+    if (frame.pointId[i] == Frame::kNoPoint) {
+      frame.pointId[i] = 2;
+      frame.depth[i] = 20.0f;
+    }
+  EXPECT_NEAR(frontSpacing(frame), 4.0, 1e-9);
+  EXPECT_EQ(closedPointSize(0.0), 1);
+  EXPECT_GE(closedPointSize(4.0), 4);
+}
+
+TEST(DensePlace, IsWhereTheSurfaceWasScannedDensely) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 4000; ++i) points.push_back({10.0 * unit(random), 10.0 * unit(random), 0.0});
+  for (int i = 0; i < 20000; ++i) points.push_back({6.0 + 3.0 * unit(random), 2.0 + 3.0 * unit(random), 0.0});
+  const DensePlace place = densestAmong(points, 0.25);
+  EXPECT_GT(place.centre.x, 6.0);
+  EXPECT_LT(place.centre.x, 9.0);
+  EXPECT_GT(place.centre.y, 2.0);
+  EXPECT_LT(place.centre.y, 5.0);
+  EXPECT_NEAR(place.spacing, std::sqrt(9.0 / 20000.0), 0.01);
+}
+
+TEST(PathMaker, OrbitShowsNearlyAllOfTheScanAllTheWay) {
+  for (const Scene& scene : {town(), statue()}) {
+    const CameraPath path = orbitPath(scene);
+    for (double t = 0.0; t <= path.duration(); t += 0.1) {
+      const View view = viewAt(path, t, 1920, 1080);
+      EXPECT_GT(shareInPicture(scene, view), 0.99) << t;
+    }
+    EXPECT_EQ(path.keys.front().eye, path.keys.back().eye);
+  }
+}
+
+TEST(PathMaker, FlythroughStaysAboveTheRoofsAndSeesTheTown) {
+  const Scene scene = town();
+  const CameraPath path = flythroughPath(scene);
+  for (double t = 0.0; t <= path.duration(); t += 0.25) {
+    const View view = viewAt(path, t, 1920, 1080);
+    EXPECT_GT(view.eye.z, scene.bounds.max.z);
+    EXPECT_GT(shareInPicture(scene, view), 0.02) << t;
+  }
+}
+
+TEST(PathMaker, StreetWalksAtEyeHeightBetweenTheHouses) {
+  const Scene scene = town();
+  const CameraPath path = streetPath(scene);
+  int inHouse = 0;
+  int steps = 0;
+  for (double t = 0.0; t <= path.duration(); t += 0.1, ++steps) {
+    const glm::dvec3 eye = viewAt(path, t, 1920, 1080).eye;
+    EXPECT_NEAR(eye.z, 101.7, 0.6);
+    const double x = std::fmod(eye.x - 630000.0, 50.0);
+    const double y = std::fmod(eye.y - 4850000.0, 50.0);
+    inHouse += x > 17.0 && x < 48.0 && y > 17.0 && y < 48.0 ? 1 : 0;
+  }
+  EXPECT_LT(inHouse, steps / 10);
+}
+
+}  // namespace
+}  // namespace strata

@@ -1,0 +1,66 @@
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+#include "core/error.h"
+#include "viewer/bench_options.h"
+#include "viewer/bench_run.h"
+#include "viewer/html_text.h"
+#include "viewer/path_maker.h"
+#include "viewer/text_file.h"
+
+namespace strata {
+namespace {
+
+std::string reportFile(const std::string& named) {
+  return std::filesystem::is_directory(named) ? named + "/report.json" : named;
+}
+
+int compare(const BenchOptions& options) {
+  const std::string a = reportFile(options.reportA);
+  const std::string b = reportFile(options.reportB);
+  const Comparison comparison = compareReports(a, readText(a), b, readText(b));
+  std::cout << comparisonTable(comparison, options.failAbove);
+  return anyWorse(comparison, options.failAbove) ? 1 : 0;
+}
+
+void printSummary(const BenchOptions& options, const BenchReport& report) {
+  const BenchMeasures& m = report.measures;
+  if (m.frames > 0)
+    std::cout << m.frames << " frames, " << readableMs(m.p50Ms) << " median, " << readableMs(m.p99Ms)
+              << " 99th percentile, " << readableCount(m.pointsPerSecond) << " points/s, " << m.hitches
+              << " hitches (" << m.backend << ", " << m.device << ")\n";
+  std::cout << options.output << "/report.html\n";
+}
+
+int runProgram(int argc, char** argv) {
+  const std::optional<BenchOptions> options = parseBenchOptions(argc, argv);
+  if (!options) return 0;
+  if (options->command == BenchOptions::Command::compare) return compare(*options);
+  if (options->command == BenchOptions::Command::makePath) {
+    const Store store(options->store);
+    std::cout << cameraPathJson(makePath(options->makePath, surveyScene(store), store));
+  } else {
+    const BenchReport report = runBench(*options);
+    if (options->json)
+      std::cout << measuresJson(report.measures) << "\n";
+    else
+      printSummary(*options, report);
+  }
+  std::cout.flush();
+  if (!std::cout) throw Error("stdout", "cannot be written");
+  return 0;
+}
+
+}  // namespace
+}  // namespace strata
+
+int main(int argc, char** argv) {
+  try {
+    return strata::runProgram(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return dynamic_cast<const strata::UsageError*>(&error) != nullptr ? 2 : 1;
+  }
+}

@@ -1,0 +1,45 @@
+#pragma once
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "core/frame.h"
+#include "lod/streamer.h"
+#include "render/rasterizer.h"
+#include "viewer/drawing.h"
+
+namespace strata {
+
+/// The command line of strata-bench.
+struct BenchOptions {
+  enum class Command { run, makePath, compare };
+
+  Command command = Command::run;
+  std::string store;
+  std::string makePath;              ///< kind of path to print
+  std::string path;                  ///< camera path to play; empty = none
+  std::string output;                ///< folder
+  bool stills = false;
+  Backend backend = Backend::automatic;
+  PictureSize size;
+  StreamerOptions streamer;
+  std::optional<ColourMode> colour;
+  int pointSize = 1;
+  bool edl = false;
+  bool cold = false;
+  bool settle = false;
+  int screenshotEvery = 0;           ///< frames; 0 = none
+  bool json = false;
+
+  std::string reportA, reportB;      ///< compare: folders or report.json files
+  double failAbove = std::numeric_limits<double>::infinity();   ///< share
+};
+
+/// Nothing when help or the version was asked for and has been printed. Throws UsageError.
+std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv);
+
+/// "5%" or "5" as 0.05. Throws UsageError.
+double parsePercent(const std::string& text);
+
+}  // namespace strata

@@ -1,0 +1,206 @@
+#include "viewer/bench_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "viewer/html_text.h"
+#include "viewer/page_cache.h"
+#include "viewer/path_player.h"
+#include "viewer/stills.h"
+#include "viewer/text_file.h"
+
+namespace strata {
+namespace {
+
+constexpr double kNearShare = 1e-4;   // of the scene's diagonal, for scans smaller than a room
+constexpr double kNear = 0.01;        // metres
+constexpr double kStillPointsPerPixel = 4.0;   // leaves no pinholes
+constexpr double kWidestSpacingPx = 6.5;       // between points in a still; beyond, the camera steps back ...
+constexpr double kWantedSpacingPx = 5.0;       // ... for this
+constexpr int kStepsBack = 3;
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+std::string utcNow() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  gmtime_r(&now, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return text;
+}
+
+std::string storeName(const std::string& path) {
+  std::filesystem::path folder = std::filesystem::path(path).lexically_normal();
+  if (!folder.has_filename()) folder = folder.parent_path();
+  return folder.stem().string();
+}
+
+Facts storeFacts(const Store& store) {
+  const StoreInfo& info = store.info();
+  char size[96];
+  const glm::dvec3 extent = info.bounds.size();
+  std::snprintf(size, sizeof size, "%.6g × %.6g × %.6g m", extent.x, extent.y, extent.z);
+  std::string attributes;
+  for (const Attribute& attribute : info.layout.attributes())
+    attributes += (attributes.empty() ? "" : ", ") + attribute.name;
+  std::string sources;
+  const std::size_t shown = std::min<std::size_t>(info.sources.size(), 4);
+  for (std::size_t i = 0; i < shown; ++i)
+    sources += (i == 0 ? "" : ", ") + std::filesystem::path(info.sources[i].path).filename().string() + " (" +
+               info.sources[i].format + ")";
+  if (info.sources.size() > shown) sources += " and " + std::to_string(info.sources.size() - shown) + " more";
+  return {{"points", readableCount(static_cast<double>(info.points))},
+          {"nodes", readableCount(static_cast<double>(info.nodes))},
+          {"levels", std::to_string(info.levels)},
+          {"extent", size},
+          {"points.bin", readableBytes(static_cast<double>(store.points().size()))},
+          {"attributes", attributes.empty() ? "none" : attributes},
+          {"sources", sources.empty() ? "unknown" : sources},
+          {"made by", info.program}};
+}
+
+Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::string& pageCache) {
+  char density[32];
+  std::snprintf(density, sizeof density, "%g", o.streamer.selection.pointsPerPixel);
+  return {{"path", o.path.empty() ? "none" : std::filesystem::path(o.path).filename().string()},
+          {"size", std::to_string(o.size.width) + "x" + std::to_string(o.size.height)},
+          {"point budget", readableCount(static_cast<double>(o.streamer.selection.pointBudget))},
+          {"points a pixel", density},
+          {"point size", std::to_string(draw.pointSize)},
+          {"colour", colourName(draw.colour)},
+          {"eye-dome lighting", draw.edl ? "yes" : "no"},
+          {"loader threads", std::to_string(o.streamer.loaderThreads)},
+          {"cache", readableBytes(static_cast<double>(o.streamer.cacheBytes))},
+          {"frames wait for detail", o.settle ? "yes" : "no"},
+          {"page cache", pageCache}};
+}
+
+StageTime stage(const std::string& name, const std::vector<FrameRecord>& frames, double FrameRecord::*member,
+                bool onRenderThread) {
+  std::vector<double> values;
+  double sum = 0.0;
+  for (const FrameRecord& frame : frames) {
+    values.push_back(frame.*member);
+    sum += values.back();
+  }
+  const double mean = frames.empty() ? 0.0 : sum / static_cast<double>(frames.size());
+  return {name, mean, percentile(values, 95.0), onRenderThread};
+}
+
+std::vector<std::pair<std::string, double>> counters(const StreamerStats& s) {
+  const auto count = [](std::uint64_t value) { return static_cast<double>(value); };
+  return {{"nodes loaded", count(s.nodesLoaded)},     {"bytes read", count(s.bytesRead)},
+          {"failures", count(s.failures)},            {"nodes given up", count(s.nodesGivenUp)},
+          {"loads dropped", count(s.loadsDropped)},   {"cache hits", count(s.cacheHits)},
+          {"cache misses", count(s.cacheMisses)},     {"evictions", count(s.evictions)},
+          {"refusals", count(s.refusals)},            {"duplicates", count(s.duplicates)},
+          {"over capacity", count(s.overCapacity)},   {"LOD passes", count(s.lodPasses)},
+          {"peak resident bytes", count(s.peakResidentBytes)}};
+}
+
+void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& store, Rasterizer& rasterizer,
+             const DrawOptions& draw, BenchReport& report) {
+  const CameraPath path = readCameraPath(options.path);
+  Streamer streamer(store, options.streamer);
+  const double nearPlane = std::min(kNear, kNearShare * store->info().bounds.diagonal());
+  PlayedPath played = playPath(
+      path, {options.size, draw, options.settle, options.screenshotEvery, options.output, nearPlane}, streamer,
+      rasterizer);
+  if (!played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
+  const StreamerStats stats = streamer.stats();
+  const std::string backend = report.measures.backend;
+  const std::string device = report.measures.device;
+  report.frames = std::move(played.frames);
+  report.measures = measureFrames(report.frames);
+  report.measures.backend = backend;
+  report.measures.device = device;
+  report.measures.timeToFullDetailMs = played.timeToFullDetailMs;
+  report.measures.lodMs = stats.lodMsMean;
+  report.measures.cacheHitRate = stats.hitRate();
+  report.counters = counters(stats);
+  report.stages = {stage("taking the render list", report.frames, &FrameRecord::listMs, true),
+                   stage("upload", report.frames, &FrameRecord::uploadMs, true),
+                   stage("drawing", report.frames, &FrameRecord::drawMs, true),
+                   stage("resolve to colour", report.frames, &FrameRecord::resolveMs, true),
+                   stage("LOD pass", report.frames, &FrameRecord::lodMs, false)};
+  report.pictures = std::move(played.pictures);
+}
+
+/// A still of full detail. Where the scan is too sparse for a place so near, the camera steps back, at most to
+/// `farthest` metres.
+Image takeStill(Still still, double farthest, DrawOptions draw, Streamer& streamer, Rasterizer& rasterizer) {
+  double spacing = 0.0;
+  for (int step = 0; step < kStepsBack; ++step) {
+    draw.pointSize = 1;
+    draw.edl = false;
+    spacing = frontSpacing(drawComplete(still.view, draw, streamer, rasterizer));
+    const double factor = std::min(spacing / kWantedSpacingPx, farthest / still.subject);
+    if (spacing <= kWidestSpacingPx || factor <= 1.05) break;
+    still = fartherStill(still, factor);
+  }
+  draw.pointSize = closedPointSize(spacing);
+  draw.edl = true;
+  return imageOf(drawComplete(still.view, draw, streamer, rasterizer));
+}
+
+/// The three pictures, before those of the flight.
+void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>& store, Rasterizer& rasterizer,
+                BenchReport& report) {
+  const Scene scene = surveyScene(*store);
+  StreamerOptions rich = options.streamer;
+  rich.selection.pointsPerPixel = std::max(rich.selection.pointsPerPixel, kStillPointsPerPixel);
+  Streamer streamer(store, rich);
+  const DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
+  std::vector<ReportPicture> pictures;
+  double farthest = 0.0;   // the overview stays where it is, each one after it nearer than the one before
+  for (const Still& still : chooseStills(scene, *store, options.size.width, options.size.height)) {
+    pictures.push_back({still.name, still.name + ".png", false,
+                        takeStill(still, farthest, draw, streamer, rasterizer)});
+    writePng(options.output + "/" + pictures.back().file, pictures.back().image);
+    farthest = scene.enclosed ? 0.0 : 0.7 * still.subject;
+  }
+  report.pictures.insert(report.pictures.begin(), pictures.begin(), pictures.end());
+}
+
+}  // namespace
+
+BenchReport runBench(const BenchOptions& options) {
+  const auto store = std::make_shared<const Store>(options.store);
+  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(options.backend);
+  makeFolder(options.output);
+
+  std::string pageCache = "left as it was";
+  if (options.cold) {
+    char text[64];
+    std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed", 100.0 * dropFromPageCache(store->points().name()));
+    pageCache = text;
+    logInfo("page cache: " + pageCache);
+  }
+  DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, options.colour);
+  draw.pointSize = options.pointSize;
+  draw.edl = options.edl;
+
+  BenchReport report;
+  report.program = std::string("strata-bench ") + STRATA_VERSION;
+  report.when = utcNow();
+  report.storePath = options.store;
+  report.storeName = storeName(options.store);
+  report.store = storeFacts(*store);
+  report.options = optionFacts(options, draw, pageCache);
+  report.machine = thisMachine();
+  report.measures.backend = rasterizer->name();
+  report.measures.device = rasterizer->device();
+  if (!options.path.empty()) flyPath(options, store, *rasterizer, draw, report);
+  if (options.stills) takeStills(options, store, *rasterizer, report);
+  writeReport(options.output, report);
+  return report;
+}
+
+}  // namespace strata

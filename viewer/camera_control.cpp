@@ -1,0 +1,130 @@
+#include "viewer/camera_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <numbers>
+
+namespace strata {
+namespace {
+
+constexpr double kSteepest = 89.0 * std::numbers::pi / 180.0;   // elevation of the eye, so that up stays defined
+constexpr double kZoomPerNotch = 0.85;
+constexpr double kFlySpeed = 0.5;    // share of the distance to the target, per second
+constexpr double kFastFactor = 5.0;
+constexpr double kNearest = 1e-4;    // metres; a zoom stops here
+
+glm::dvec3 rotated(const glm::dvec3& v, double angle, const glm::dvec3& axis) {
+  return glm::angleAxis(angle, axis) * v;
+}
+
+}  // namespace
+
+glm::dvec3 worldPoint(const View& view, const glm::dvec2& pixel, double depth) {
+  const ViewBasis basis = viewBasis(view);
+  const double metresPerPixel = 1.0 / pixelsAt(view, 1.0, depth);
+  return view.eye + basis.forward * depth + basis.right * ((pixel.x - 0.5 * view.width) * metresPerPixel) -
+         basis.up * ((pixel.y - 0.5 * view.height) * metresPerPixel);
+}
+
+double depthOf(const View& view, const glm::dvec3& point) {
+  return glm::dot(viewBasis(view).forward, point - view.eye);
+}
+
+glm::dvec2 pixelOf(const View& view, const glm::dvec3& point) {
+  const Projection p = projection(view);
+  const glm::dvec4 d(point - p.eye, 1.0);
+  return glm::dvec2(glm::dot(p.rowX, d), glm::dot(p.rowY, d)) / glm::dot(p.rowW, d);
+}
+
+View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx) {
+  const double perPixel = std::numbers::pi / std::max(view.width, 1);
+  const glm::dvec3 up(0.0, 0.0, 1.0);
+  const ViewBasis basis = viewBasis(view);
+  const double elevation = -std::asin(std::clamp(basis.forward.z, -1.0, 1.0));
+  const double wanted = std::clamp(elevation + dragPx.y * perPixel, -kSteepest, kSteepest);
+  const double yaw = -dragPx.x * perPixel;
+  const auto turn = [&](const glm::dvec3& v) { return rotated(rotated(v, elevation - wanted, basis.right), yaw, up); };
+  View next = view;
+  next.eye = pivot + turn(view.eye - pivot);
+  next.target = next.eye + turn(view.target - view.eye);
+  next.up = up;
+  return next;
+}
+
+View panned(const View& view, double depth, const glm::dvec2& dragPx) {
+  const ViewBasis basis = viewBasis(view);
+  const double metresPerPixel = 1.0 / pixelsAt(view, 1.0, depth);
+  const glm::dvec3 shift = (basis.up * dragPx.y - basis.right * dragPx.x) * metresPerPixel;
+  View next = view;
+  next.eye += shift;
+  next.target += shift;
+  return next;
+}
+
+View zoomed(const View& view, const glm::dvec3& anchor, double factor) {
+  View next = view;
+  if (factor < 1.0 && glm::length(view.eye - anchor) < kNearest) return next;
+  next.eye = anchor + (view.eye - anchor) * factor;
+  // The target keeps the view's direction: both move by the same scaling about the anchor.
+  next.target = anchor + (view.target - anchor) * factor;
+  if (glm::length(next.target - next.eye) < kNearest) return view;
+  next.orthographicHeight = view.orthographicHeight * factor;
+  return next;
+}
+
+View flown(const View& view, const FlyInput& input, double seconds) {
+  const ViewBasis basis = viewBasis(view);
+  const double speed = kFlySpeed * glm::length(view.target - view.eye) * (input.fast ? kFastFactor : 1.0);
+  const glm::dvec3 shift = (basis.forward * static_cast<double>(input.forward) +
+                            basis.right * static_cast<double>(input.right) +
+                            glm::dvec3(0.0, 0.0, 1.0) * static_cast<double>(input.up)) *
+                           (speed * seconds);
+  View next = view;
+  next.eye += shift;
+  next.target += shift;
+  return next;
+}
+
+View framed(const View& view, const Box& box) {
+  View next = view;
+  const View seen = viewOfBox(box, viewBasis(view).forward, view.width, view.height, view.fovY);
+  next.eye = seen.eye;
+  next.target = seen.target;
+  next.orthographicHeight = std::max(box.diagonal(), 1e-6);
+  return next;
+}
+
+View standardView(const View& view, const Box& box, StandardView which) {
+  View turned = view;
+  turned.up = which == StandardView::top ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+  const glm::dvec3 direction = which == StandardView::front  ? glm::dvec3(0.0, 1.0, 0.0)
+                               : which == StandardView::side ? glm::dvec3(-1.0, 0.0, 0.0)
+                                                             : glm::dvec3(0.0, 0.0, -1.0);
+  turned.target = turned.eye + direction;
+  return framed(turned, box);
+}
+
+void CameraControl::resize(int width, int height) {
+  view_.width = std::max(width, 1);
+  view_.height = std::max(height, 1);
+}
+
+void CameraControl::press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  drag_ = drag;
+  cursor_ = cursor;
+  anchor_ = under.value_or(view_.target);
+}
+
+void CameraControl::move(const glm::dvec2& cursor) {
+  if (drag_ == Drag::orbit) view_ = orbited(view_, anchor_, cursor - cursor_);
+  if (drag_ == Drag::pan) view_ = panned(view_, std::max(depthOf(view_, anchor_), view_.nearPlane), cursor - cursor_);
+  cursor_ = cursor;
+}
+
+void CameraControl::wheel(double notches, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  const glm::dvec3 anchor = under ? *under : worldPoint(view_, cursor, depthOf(view_, view_.target));
+  view_ = zoomed(view_, anchor, std::pow(kZoomPerNotch, notches));
+}
+
+}  // namespace strata

@@ -1,0 +1,71 @@
+#pragma once
+#include <optional>
+
+#include <glm/glm.hpp>
+
+#include "core/box.h"
+#include "core/view.h"
+
+namespace strata {
+
+// How a hand moves the camera: plain functions from a view and an input to the next view. Pixels have their origin
+// at the top left. World z is up throughout.
+
+/// The world point seen at `pixel` at `depth` metres along the view direction.
+glm::dvec3 worldPoint(const View& view, const glm::dvec2& pixel, double depth);
+/// Metres along the view direction from the eye to `point`.
+double depthOf(const View& view, const glm::dvec3& point);
+/// Where `point` appears. It has to lie before the eye.
+glm::dvec2 pixelOf(const View& view, const glm::dvec3& point);
+
+/// Turns around `pivot`: half a turn for a drag over the image's width. The distance to the pivot stays, the horizon
+/// stays level, and the camera never tips over.
+View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx);
+/// Shifts so that what lies `depth` metres away follows the cursor exactly.
+View panned(const View& view, double depth, const glm::dvec2& dragPx);
+/// Scales the distance to `anchor` by `factor`; the anchor stays under the cursor.
+View zoomed(const View& view, const glm::dvec3& anchor, double factor);
+
+/// Directions held down, each -1, 0 or 1.
+struct FlyInput {
+  int forward = 0, right = 0, up = 0;
+  bool fast = false;
+
+  bool still() const { return forward == 0 && right == 0 && up == 0; }
+};
+/// Moves eye and target. The speed is half the distance to the target in a second, five times that when fast: near
+/// things are passed slowly, and a zoom sets the pace.
+View flown(const View& view, const FlyInput& input, double seconds);
+
+enum class StandardView { front, side, top };
+/// All of `box` from the south, the east or above.
+View standardView(const View& view, const Box& box, StandardView which);
+/// All of `box`, from where the camera looks now.
+View framed(const View& view, const Box& box);
+
+/// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
+class CameraControl {
+ public:
+  enum class Drag { none, orbit, pan };
+
+  explicit CameraControl(const View& view) : view_(view) {}
+
+  const View& view() const { return view_; }
+  void setView(const View& view) { view_ = view; }
+  void resize(int width, int height);
+
+  void press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
+  void move(const glm::dvec2& cursor);
+  void release() { drag_ = Drag::none; }
+  /// Positive notches go nearer.
+  void wheel(double notches, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
+  void fly(const FlyInput& input, double seconds) { view_ = flown(view_, input, seconds); }
+
+ private:
+  View view_;
+  Drag drag_ = Drag::none;
+  glm::dvec2 cursor_{0.0};
+  glm::dvec3 anchor_{0.0};   ///< pivot of an orbit, grabbed point of a pan
+};
+
+}  // namespace strata

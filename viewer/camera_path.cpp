@@ -1,0 +1,160 @@
+#include "viewer/camera_path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "core/error.h"
+#include "viewer/text_file.h"
+
+namespace strata {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMaxFps = 1000.0;
+constexpr double kMaxFrames = 1e6;   // keeps a mistyped time from running for weeks
+
+using Json = nlohmann::json;
+
+glm::dvec3 tangent(const glm::dvec3& before, const glm::dvec3& here, const glm::dvec3& after, double stepBefore,
+                   double stepAfter) {
+  return ((after - here) / stepAfter * stepBefore + (here - before) / stepBefore * stepAfter) /
+         (stepBefore + stepAfter);
+}
+
+/// Tangent at key i of the curve through `member` of the keys. At an open end the curve is a parabola.
+glm::dvec3 tangentAt(const std::vector<CameraKey>& keys, std::size_t i, glm::dvec3 CameraKey::*member) {
+  const std::size_t last = keys.size() - 1;
+  const bool closed = keys.size() > 3 && keys[0].eye == keys[last].eye && keys[0].target == keys[last].target;
+  const auto slope = [&](std::size_t k) {
+    return (keys[k + 1].*member - keys[k].*member) / (keys[k + 1].t - keys[k].t);
+  };
+  if (i > 0 && i < last)
+    return tangent(keys[i - 1].*member, keys[i].*member, keys[i + 1].*member, keys[i].t - keys[i - 1].t,
+                   keys[i + 1].t - keys[i].t);
+  if (closed)
+    return tangent(keys[last - 1].*member, keys[0].*member, keys[1].*member, keys[last].t - keys[last - 1].t,
+                   keys[1].t - keys[0].t);
+  const std::size_t span = i == 0 ? 0 : last - 1;
+  if (keys.size() == 2) return slope(span);
+  return 2.0 * slope(span) - tangentAt(keys, i == 0 ? 1 : last - 1, member);
+}
+
+glm::dvec3 hermite(const glm::dvec3& p0, const glm::dvec3& m0, const glm::dvec3& p1, const glm::dvec3& m1,
+                   double step, double u) {
+  const double u2 = u * u;
+  const double u3 = u2 * u;
+  // Written around p0 so that equal points stay exactly equal.
+  return p0 + (3.0 * u2 - 2.0 * u3) * (p1 - p0) + step * ((u3 - 2.0 * u2 + u) * m0 + (u3 - u2) * m1);
+}
+
+[[noreturn]] void refuseKey(const std::string& file, std::size_t index, const std::string& what) {
+  throw Error(file, "key " + std::to_string(index + 1) + ": " + what);
+}
+
+double numberOf(const std::string& file, const Json& value, const std::string& name) {
+  if (!value.is_number() || !std::isfinite(value.get<double>()))
+    throw Error(file, name + " is no number, found " + value.dump());
+  return value.get<double>();
+}
+
+glm::dvec3 vectorOf(const std::string& file, const Json& key, std::size_t index, const char* name) {
+  const auto found = key.find(name);
+  if (found == key.end()) refuseKey(file, index, std::string(name) + " is missing");
+  if (!found->is_array() || found->size() != 3)
+    refuseKey(file, index, std::string(name) + ", found " + found->dump() + " (expected three numbers)");
+  glm::dvec3 value;
+  for (glm::length_t axis = 0; axis < 3; ++axis) {
+    const Json& number = (*found)[static_cast<std::size_t>(axis)];
+    if (!number.is_number() || !std::isfinite(number.get<double>()))
+      refuseKey(file, index, std::string(name) + ", found " + found->dump() + " (expected three numbers)");
+    value[axis] = number.get<double>();
+  }
+  return value;
+}
+
+CameraKey parseKey(const std::string& file, const Json& json, std::size_t index) {
+  if (!json.is_object()) refuseKey(file, index, "found " + json.dump() + " (expected an object)");
+  const auto t = json.find("t");
+  if (t == json.end() || !t->is_number()) refuseKey(file, index, "t is missing or no number");
+  CameraKey key;
+  key.t = t->get<double>();
+  key.eye = vectorOf(file, json, index, "eye");
+  key.target = vectorOf(file, json, index, "target");
+  if (json.contains("up")) key.up = vectorOf(file, json, index, "up");
+  if (key.eye == key.target) refuseKey(file, index, "eye and target are the same point");
+  if (glm::length(key.up) == 0.0) refuseKey(file, index, "up has no length");
+  return key;
+}
+
+}  // namespace
+
+int CameraPath::frames() const { return static_cast<int>(std::floor(duration() * fps + 1e-6)) + 1; }
+
+View viewAt(const CameraPath& path, double t, int width, int height) {
+  const std::vector<CameraKey>& keys = path.keys;
+  View view;
+  view.fovY = path.fovY;
+  view.width = width;
+  view.height = height;
+  const auto after = std::upper_bound(keys.begin(), keys.end(), t,
+                                      [](double value, const CameraKey& key) { return value < key.t; });
+  if (after == keys.begin() || after == keys.end()) {
+    const CameraKey& still = after == keys.begin() ? keys.front() : keys.back();
+    view.eye = still.eye;
+    view.target = still.target;
+    view.up = still.up;
+    return view;
+  }
+  const std::size_t i = static_cast<std::size_t>(after - keys.begin()) - 1;
+  const double step = keys[i + 1].t - keys[i].t;
+  const double u = (t - keys[i].t) / step;
+  const auto curve = [&](glm::dvec3 CameraKey::*member) {
+    return hermite(keys[i].*member, tangentAt(keys, i, member), keys[i + 1].*member, tangentAt(keys, i + 1, member),
+                   step, u);
+  };
+  view.eye = curve(&CameraKey::eye);
+  view.target = curve(&CameraKey::target);
+  view.up = glm::mix(keys[i].up, keys[i + 1].up, u);
+  return view;
+}
+
+std::string cameraPathJson(const CameraPath& path) {
+  const auto vector = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}).dump(); };
+  const double degrees = std::round(path.fovY / kDegree * 1e9) / 1e9;   // 60, not 59.99999999999999
+  std::string text = "{\"fps\":" + Json(path.fps).dump() + ",\"fov_y\":" + Json(degrees).dump() +
+                     ",\"keys\":[\n";
+  for (const CameraKey& key : path.keys)
+    text += std::string(&key == path.keys.data() ? " " : ",\n ") + "{\"t\":" + Json(key.t).dump() +
+            ",\"eye\":" + vector(key.eye) + ",\"target\":" + vector(key.target) + ",\"up\":" + vector(key.up) + "}";
+  return text + "\n]}\n";
+}
+
+CameraPath parseCameraPath(const std::string& file, const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw Error(file, "is no JSON");
+  if (!json.is_object()) throw Error(file, "is no camera path, found JSON of type " + std::string(json.type_name()));
+  CameraPath path;
+  if (json.contains("fps")) path.fps = numberOf(file, json["fps"], "fps");
+  if (!(path.fps > 0.0 && path.fps <= kMaxFps))
+    throw Error(file, "fps, found " + Json(path.fps).dump() + " (expected above 0, at most 1000)");
+  if (json.contains("fov_y")) path.fovY = numberOf(file, json["fov_y"], "fov_y") * kDegree;
+  if (!(path.fovY >= 1.0 * kDegree && path.fovY <= 170.0 * kDegree))
+    throw Error(file, "fov_y, found " + json["fov_y"].dump() + " (expected 1 to 170 degrees)");
+  const auto keys = json.find("keys");
+  if (keys == json.end() || !keys->is_array() || keys->empty())
+    throw Error(file, "keys is missing or empty (expected a list of at least one key)");
+  for (std::size_t i = 0; i < keys->size(); ++i) {
+    path.keys.push_back(parseKey(file, (*keys)[i], i));
+    if (i > 0 && !(path.keys[i].t > path.keys[i - 1].t))
+      refuseKey(file, i, "t " + Json(path.keys[i].t).dump() + " is not after " + Json(path.keys[i - 1].t).dump());
+  }
+  if (!(path.duration() * path.fps < kMaxFrames))
+    throw Error(file, "too long, found " + Json(path.duration() * path.fps).dump() + " frames (expected under 1e6)");
+  return path;
+}
+
+CameraPath readCameraPath(const std::string& file) { return parseCameraPath(file, readText(file)); }
+
+}  // namespace strata

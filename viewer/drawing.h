@@ -1,0 +1,36 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/box.h"
+#include "core/frame.h"
+#include "core/image.h"
+#include "io/store.h"
+#include "render/rasterizer.h"
+
+namespace strata {
+
+/// "rgb", "intensity", "elevation", "classification", "level"; "auto" is nothing. Throws UsageError for another name.
+std::optional<ColourMode> parseColour(const std::string& name);
+const char* colourName(ColourMode mode);
+
+/// What shows a store best: its colours where it has any, else its intensity where that varies, else the elevation.
+ColourMode bestColour(const StoreInfo& info);
+
+/// Colour, intensity from the 1st to the 99th percentile, elevation over `bounds`.
+DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::optional<ColourMode> colour);
+
+/// A rasterizer without a window. `automatic` falls back to the cpu where there is no OpenGL.
+std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend);
+
+Image imageOf(const Frame& frame);
+
+/// "1920x1080" as width and height, 1 to 16384 each. Throws UsageError.
+struct PictureSize {
+  int width = 1920;
+  int height = 1080;
+};
+PictureSize parseSize(const std::string& text);
+
+}  // namespace strata

@@ -1,0 +1,21 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace strata {
+
+/// Text made safe inside HTML elements and quoted attributes.
+std::string htmlEscape(std::string_view text);
+/// RFC 4648.
+std::string base64(std::span<const std::uint8_t> bytes);
+
+/// "950", "12.3 k", "4.56 M", "1.20 G": three digits that a person reads.
+std::string readableCount(double value);
+/// "12.3 MB" in powers of 1000.
+std::string readableBytes(double bytes);
+/// "8.31 ms", "2.40 s".
+std::string readableMs(double ms);
+
+}  // namespace strata

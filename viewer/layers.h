@@ -1,0 +1,38 @@
+#pragma once
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lod/streamer.h"
+
+namespace strata {
+
+/// Several stores drawn as one picture: a streamer for each, their render lists one after the other. All members are
+/// for the render thread.
+class Layers {
+ public:
+  /// The cache's bytes and the point budget of `options` are shared out evenly.
+  Layers(std::vector<std::shared_ptr<const Store>> stores, const StreamerOptions& options);
+
+  void setView(const View& view);
+  void setSelection(const SelectionOptions& selection);
+  /// Valid until the next call of this or of waitUntilComplete().
+  const RenderList& beginFrame();
+  bool complete() const;
+  bool waitUntilComplete(std::chrono::milliseconds timeout);
+
+  const std::vector<std::shared_ptr<const Store>>& stores() const { return stores_; }
+  /// Summed over the layers; lodMs is the longest.
+  StreamerStats stats() const;
+
+ private:
+  std::vector<std::shared_ptr<const Store>> stores_;
+  RenderList merged_;
+  std::vector<std::unique_ptr<Streamer>> streamers_;
+};
+
+/// Puts the items of `list` behind those of `merged`.
+void appendList(const RenderList& list, RenderList& merged);
+
+}  // namespace strata

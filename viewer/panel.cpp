@@ -1,0 +1,86 @@
+#include "viewer/panel.h"
+
+#include <imgui.h>
+
+#include <cmath>
+
+#include "viewer/html_text.h"
+
+namespace strata {
+namespace {
+
+constexpr float kWidth = 330.0f;            // pixels
+constexpr float kLeastBudget = 1e5f;        // points
+constexpr float kMostBudget = 1e8f;
+
+bool drawSettings(ViewerSettings& settings) {
+  bool changed = false;
+  float budget = static_cast<float>(settings.selection.pointBudget);
+  if (ImGui::SliderFloat("points", &budget, kLeastBudget, kMostBudget, readableCount(budget).c_str(),
+                         ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoInput)) {
+    settings.selection.pointBudget = static_cast<std::uint64_t>(std::llround(budget));
+    changed = true;
+  }
+  float density = static_cast<float>(settings.selection.pointsPerPixel);
+  if (ImGui::SliderFloat("a pixel", &density, 0.05f, 8.0f, "%.2f points", ImGuiSliderFlags_Logarithmic)) {
+    settings.selection.pointsPerPixel = static_cast<double>(density);
+    changed = true;
+  }
+  changed = ImGui::SliderInt("size", &settings.draw.pointSize, 1, 8, "%d px") || changed;
+  // In the order of ColourMode.
+  int mode = static_cast<int>(settings.draw.colour);
+  if (ImGui::Combo("colour", &mode, "rgb\0intensity\0elevation\0classification\0level\0")) {
+    settings.draw.colour = static_cast<ColourMode>(mode);
+    changed = true;
+  }
+  changed = ImGui::Checkbox("eye-dome lighting", &settings.draw.edl) || changed;
+  if (settings.draw.edl)
+    changed = ImGui::SliderFloat("strength", &settings.draw.edlStrength, 0.1f, 4.0f, "%.1f") || changed;
+  return changed;
+}
+
+void line(const char* name, const std::string& value) {
+  ImGui::TextUnformatted(name);
+  ImGui::SameLine(0.5f * kWidth);
+  ImGui::TextUnformatted(value.c_str());
+}
+
+void drawStats(const ViewerStats& stats) {
+  line("frame", readableMs(stats.frameMs));
+  line("points drawn", readableCount(static_cast<double>(stats.draw.pointsDrawn)));
+  line("of", readableCount(static_cast<double>(stats.pointsInStores)));
+  line("nodes in memory", readableCount(stats.streamer.residentNodes) + ", " +
+                              readableBytes(static_cast<double>(stats.streamer.residentBytes)));
+  line("missing nodes", std::to_string(stats.missingNodes) + (stats.complete ? ", complete" : ", loading"));
+  line("read", readableBytes(static_cast<double>(stats.streamer.bytesRead)));
+  line("LOD pass", readableMs(stats.streamer.lodMs));
+  if (stats.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(stats.draw.gpuBytes)));
+  if (stats.streamer.failures > 0)
+    ImGui::TextColored(ImVec4(1.0f, 0.5f, 0.4f, 1.0f), "%llu nodes could not be read",
+                       static_cast<unsigned long long>(stats.streamer.failures));
+}
+
+}  // namespace
+
+bool drawPanel(ViewerSettings& settings, const ViewerStats& stats) {
+  ImGui::SetNextWindowPos(ImVec2(12.0f, 12.0f), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize(ImVec2(kWidth, 0.0f), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowBgAlpha(0.82f);
+  bool changed = false;
+  if (ImGui::Begin("Strata", nullptr, ImGuiWindowFlags_NoFocusOnAppearing)) {
+    ImGui::TextWrapped("%s", stats.layers.c_str());
+    ImGui::TextDisabled("%s", stats.rasterizer.c_str());
+    ImGui::Separator();
+    ImGui::PushItemWidth(0.55f * kWidth);
+    changed = drawSettings(settings);
+    ImGui::PopItemWidth();
+    ImGui::Separator();
+    drawStats(stats);
+    ImGui::Separator();
+    ImGui::TextDisabled("left drag orbit, right drag pan, wheel zoom\nW A S D E Q fly, shift faster\nF all, 1 3 7 front side top");
+  }
+  ImGui::End();
+  return changed;
+}
+
+}  // namespace strata

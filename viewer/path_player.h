@@ -1,0 +1,37 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+#include "lod/streamer.h"
+#include "render/rasterizer.h"
+#include "viewer/camera_path.h"
+#include "viewer/drawing.h"
+#include "viewer/report.h"
+
+namespace strata {
+
+struct PlayOptions {
+  PictureSize size;
+  DrawOptions draw;
+  bool settle = false;
+  int screenshotEvery = 0;
+  std::string folder;      ///< for the pictures
+  double nearPlane = 0.01;
+};
+
+/// What a flight left behind.
+struct PlayedPath {
+  std::vector<FrameRecord> frames;
+  double timeToFullDetailMs = 0.0;
+  bool reachedFullDetail = false;
+  std::vector<ReportPicture> pictures;   ///< the ones that the report does not show have no pixels
+};
+
+/// The whole flight, on the calling thread, which becomes the streamer's render thread.
+PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer);
+
+/// Draws until everything in the list is on the GPU: one picture in full detail. Waits for the streamer first.
+Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer);
+
+}  // namespace strata

@@ -1,0 +1,48 @@
+#include "viewer/text_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/error.h"
+
+namespace strata {
+
+std::string readText(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) throw posixError(path, "opening", EISDIR);
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw posixError(path, "opening", errno != 0 ? errno : EIO);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (file.bad()) throw Error(path, "cannot be read as a file");
+  return text;
+}
+
+void writeText(const std::string& path, std::string_view text) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (file < 0) throw posixError(path, "opening for writing", errno);
+  int failure = 0;
+  while (!text.empty() && failure == 0) {
+    const ssize_t written = ::write(file, text.data(), text.size());
+    if (written < 0 && errno != EINTR) failure = errno;
+    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (::close(file) != 0 && failure == 0) failure = errno;
+  if (failure == 0) return;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) ::unlink(path.c_str());
+  throw posixError(path, "writing", failure);
+}
+
+void makeFolder(const std::string& path) {
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(path, "making the folder: " + failure.message());
+}
+
+}  // namespace strata

@@ -1,0 +1,167 @@
+#include "viewer/viewer_app.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "core/image.h"
+#include "viewer/camera_control.h"
+#include "viewer/layers.h"
+#include "viewer/panel.h"
+#include "viewer/scene.h"
+#include "viewer/screen.h"
+#include "viewer/stills.h"
+#include "viewer/window.h"
+
+namespace strata {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{120'000};   // for a screenshot's full detail
+constexpr double kIdleWait = 0.25;    // seconds between frames where nothing happens
+constexpr int kPanelFrames = 2;
+constexpr double kSmoothing = 0.1;    // share of the newest frame in the frame time shown
+
+std::vector<std::shared_ptr<const Store>> openStores(const std::vector<std::string>& paths) {
+  std::vector<std::shared_ptr<const Store>> stores;
+  for (const std::string& path : paths) stores.push_back(std::make_shared<const Store>(path));
+  return stores;
+}
+
+Scene surveyAll(const std::vector<std::shared_ptr<const Store>>& stores) {
+  std::vector<glm::dvec3> points;
+  for (const auto& store : stores) {
+    const Scene scene = surveyScene(*store);
+    points.insert(points.end(), scene.points.begin(), scene.points.end());
+  }
+  return makeScene(std::move(points));
+}
+
+std::string layerNames(const std::vector<std::string>& paths) {
+  std::string names;
+  for (const std::string& path : paths) {
+    const std::filesystem::path folder(path.back() == '/' ? path.substr(0, path.size() - 1) : path);
+    names += (names.empty() ? "" : ", ") + folder.stem().string();
+  }
+  return names;
+}
+
+class ViewerApp {
+ public:
+  explicit ViewerApp(const ViewerOptions& options)
+      : layers_(openStores(options.stores), options.streamer),
+        scene_(surveyAll(layers_.stores())),
+        window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
+                options.screenshot.empty()),
+        screen_(Window::getProc()),
+        rasterizer_(createRasterizer(options.backend, {}, adoptCurrentContext(Window::getProc()))),
+        control_(overviewStill(scene_, options.size.width, options.size.height).view) {
+    settings_.selection = options.streamer.selection;
+    settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
+    settings_.draw.pointSize = options.pointSize;
+    settings_.draw.edl = options.edl;
+    stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
+    stats_.layers = layerNames(options.stores);
+    for (const auto& store : layers_.stores()) stats_.pointsInStores += store->info().points;
+  }
+
+  void run() {
+    bool idle = false;
+    while (!window_.closed()) {
+      const WindowInput input = window_.beginFrame(idle ? kIdleWait : 0.0);
+      if (input.width == 0 || input.height == 0) {   // minimised
+        window_.finishFrame();
+        idle = true;
+        continue;
+      }
+      steer(input);
+      drawFrame(input.width, input.height);
+      const bool changed = drawPanel(settings_, stats_);
+      if (changed) layers_.setSelection(settings_.selection);
+      window_.finishFrame();
+      window_.present();
+      idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0;
+    }
+  }
+
+  void screenshot(const std::string& file) {
+    WindowInput input;
+    bool uploading = true;
+    // The panel knows its size only in its second frame.
+    for (int i = 0; i < kPanelFrames || uploading; ++i) {
+      input = window_.beginFrame(0.0);
+      control_.resize(input.width, input.height);
+      layers_.setView(control_.view());
+      layers_.waitUntilComplete(kLongestWait);
+      drawFrame(input.width, input.height);
+      drawPanel(settings_, stats_);
+      window_.finishFrame();
+      uploading = stats_.draw.nodesNotUploaded > 0 && stats_.draw.bytesUploaded > 0;
+    }
+    writePng(file, screen_.read(input.width, input.height));
+  }
+
+ private:
+  /// The world point below the cursor in the newest picture, where there is one.
+  std::optional<glm::dvec3> pointUnder(const glm::dvec2& cursor) const {
+    const int x = static_cast<int>(std::floor(cursor.x));
+    const int y = static_cast<int>(std::floor(cursor.y));
+    if (x < 0 || y < 0 || x >= frame_.width || y >= frame_.height) return std::nullopt;
+    const float depth = frame_.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) +
+                                     static_cast<std::size_t>(x)];
+    if (!std::isfinite(depth)) return std::nullopt;
+    return worldPoint(control_.view(), cursor, static_cast<double>(depth));
+  }
+
+  void steer(const WindowInput& input) {
+    control_.resize(input.width, input.height);
+    if (input.leftPressed) control_.press(CameraControl::Drag::orbit, input.cursor, pointUnder(input.cursor));
+    if (input.rightPressed) control_.press(CameraControl::Drag::pan, input.cursor, pointUnder(input.cursor));
+    if (input.dragging) control_.move(input.cursor);
+    if (!input.dragging) control_.release();
+    if (input.wheel != 0.0) control_.wheel(input.wheel, input.cursor, pointUnder(input.cursor));
+    if (!input.fly.still()) control_.fly(input.fly, input.seconds);
+    const View& view = control_.view();
+    if (input.frameAll) control_.setView(framed(view, scene_.bounds));
+    if (input.front) control_.setView(standardView(view, scene_.bounds, StandardView::front));
+    if (input.side) control_.setView(standardView(view, scene_.bounds, StandardView::side));
+    if (input.top) control_.setView(standardView(view, scene_.bounds, StandardView::top));
+  }
+
+  void drawFrame(int width, int height) {
+    control_.resize(width, height);
+    const auto start = std::chrono::steady_clock::now();
+    layers_.setView(control_.view());
+    const RenderList& list = layers_.beginFrame();
+    stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
+    screen_.upload(frame_);
+    window_.drawPicture(screen_.texture());
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    stats_.frameMs = stats_.frameMs == 0.0 ? ms : stats_.frameMs + kSmoothing * (ms - stats_.frameMs);
+    stats_.missingNodes = list.missingNodes;
+    stats_.complete = layers_.complete();
+    stats_.streamer = layers_.stats();
+  }
+
+  Layers layers_;
+  const Scene scene_;
+  Window window_;
+  Screen screen_;
+  std::unique_ptr<Rasterizer> rasterizer_;
+  CameraControl control_;
+  ViewerSettings settings_;
+  ViewerStats stats_;
+  Frame frame_;
+};
+
+}  // namespace
+
+void runViewer(const ViewerOptions& options) {
+  ViewerApp app(options);
+  if (options.screenshot.empty())
+    app.run();
+  else
+    app.screenshot(options.screenshot);
+}
+
+}  // namespace strata

@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/frame.h"
+#include "lod/streamer.h"
+#include "render/rasterizer.h"
+#include "viewer/drawing.h"
+
+namespace strata {
+
+/// The command line of strata-view.
+struct ViewerOptions {
+  std::vector<std::string> stores;
+  Backend backend = Backend::automatic;
+  PictureSize size{1280, 800};
+  StreamerOptions streamer;
+  std::optional<ColourMode> colour;
+  int pointSize = 2;
+  bool edl = true;
+  std::string screenshot;   ///< file; draws one frame in full detail, window and all, and ends
+};
+
+/// Nothing when help or the version was asked for and has been printed. Throws UsageError.
+std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* argv);
+
+/// Until the window is closed. Throws Error for stores that cannot be opened and where there is no window.
+void runViewer(const ViewerOptions& options);
+
+}  // namespace strata

@@ -1,0 +1,44 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "core/error.h"
+#include "viewer/viewer_app.h"
+
+namespace strata {
+
+std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* argv) {
+  ViewerOptions options;
+  std::string backend = "auto", size = "1280x800", colour = "auto";
+  bool noEdl = false;
+  CLI::App app{"Flies through stores.", "strata-view"};
+  app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
+  app.add_option("stores", options.stores, "one or more stores, NAME.strata, shown as layers")->required();
+  app.add_option("--backend", backend, "cpu, compute32, points or auto")->capture_default_str();
+  app.add_option("--size", size, "of the window, pixels")->capture_default_str();
+  app.add_option("--point-budget", options.streamer.selection.pointBudget, "most points in a frame")
+      ->check(CLI::Range(std::uint64_t{1}, SelectionOptions::kMaxPointBudget))
+      ->capture_default_str();
+  app.add_option("--point-size", options.pointSize, "side of a point, pixels")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  app.add_option("--colour", colour, "auto, rgb, intensity, elevation, classification or level")->capture_default_str();
+  app.add_option("--cache", options.streamer.cacheBytes, "memory for decoded nodes, such as 512M or 2G")
+      ->transform(CLI::AsSizeValue(false));
+  app.add_flag("--no-edl", noEdl, "without eye-dome lighting");
+  app.add_option("--screenshot", options.screenshot, "write one complete frame to this PNG and end");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    app.exit(asked, std::cout, std::cerr);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(error.what());
+  }
+  options.backend = parseBackend(backend);
+  options.size = parseSize(size);
+  options.colour = parseColour(colour);
+  options.edl = !noEdl;
+  return options;
+}
+
+}  // namespace strata

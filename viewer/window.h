@@ -1,0 +1,58 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include <glm/glm.hpp>
+
+#include "render/gl_context.h"
+#include "viewer/camera_control.h"
+
+namespace strata {
+
+/// What happened since the last frame. Pixels of the framebuffer, origin at the top left. What the user did inside
+/// the panel is not in here.
+struct WindowInput {
+  int width = 0, height = 0;
+  double seconds = 0.0;          ///< since the last frame
+  glm::dvec2 cursor{0.0};
+  bool leftPressed = false;      ///< went down in this frame
+  bool rightPressed = false;
+  bool dragging = false;         ///< a button is down
+  double wheel = 0.0;            ///< notches, positive away from the user
+  FlyInput fly;                  ///< W A S D, E and Q for up and down, shift
+  bool frameAll = false;         ///< F
+  bool front = false, side = false, top = false;   ///< 1, 3, 7
+
+  /// Nothing that changes the picture.
+  bool idle() const {
+    return !dragging && !leftPressed && !rightPressed && wheel == 0.0 && fly.still() && !frameAll && !front && !side &&
+           !top;
+  }
+};
+
+/// A window with an OpenGL context, current in the thread that makes it, and Dear ImGui in it. There is one at a time.
+class Window {
+ public:
+  /// Throws Error when there is no display or no OpenGL. A hidden window still draws.
+  Window(const std::string& title, int width, int height, bool visible);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  bool closed() const;
+  /// Takes in what happened and begins a frame of the panel. Where nothing does, waits up to `waitSeconds`.
+  WindowInput beginFrame(double waitSeconds);
+  /// Puts a texture behind everything.
+  void drawPicture(unsigned texture);
+  /// Draws the panel into the back buffer.
+  void finishFrame();
+  void present();
+
+  static GlContext::GetProc getProc();
+
+ private:
+  struct Parts;   // GLFW's and ImGui's own
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace strata
