@@ -1,0 +1,138 @@
+// strata-view in a virtual X server with software OpenGL, and what strata-bench leaves behind.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "core/image.h"
+#include "tests/support/programs.h"
+
+namespace strata::test {
+namespace {
+
+constexpr const char* kXvfbRun = "/usr/bin/xvfb-run";
+
+class Viewer : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    mustConvert({"synthetic:city?points=200000&seed=1"}, city());
+    mustConvert({"synthetic:room?points=100000&seed=2"}, room());
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::filesystem::path city() { return *folder_ / "city.strata"; }
+  static std::filesystem::path room() { return *folder_ / "room.strata"; }
+  static std::filesystem::path file(const std::string& name) { return *folder_ / name; }
+
+  static Finished viewInX(const std::vector<std::string>& arguments) {
+    std::vector<std::string> all{"-a", "-s", "-screen 0 1024x768x24", programPath("strata-view").string()};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return runProgram(kXvfbRun, all);
+  }
+
+  static Finished bench(const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> all{city().string(), "-o", file(out).string(), "--backend", "cpu", "--size", "160x90"};
+    all.insert(all.end(), more.begin(), more.end());
+    return runProgram("strata-bench", all);
+  }
+
+  static std::string shortPath() {
+    const std::string path = file("short.json").string();
+    const Finished made = runProgram("strata-bench", {"--make-path", "dive", city().string()});
+    Json json = Json::parse(made.out);
+    for (Json& key : json["keys"]) key["t"] = key["t"].get<double>() / 24.0;
+    std::ofstream(path) << json;
+    return path;
+  }
+
+ private:
+  static TempFolder* folder_;
+};
+TempFolder* Viewer::folder_ = nullptr;
+
+TEST_F(Viewer, WithoutADisplayItSaysSo) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
+  const Finished finished = runProgram("strata-view", {city().string(), "--screenshot", file("none.png").string()});
+  expectFailure(finished);
+  EXPECT_NE(finished.err.find("window"), std::string::npos) << finished.err;
+}
+
+TEST_F(Viewer, DrawsAStoreAndAPanel) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  const std::string png = file("one.png").string();
+  const Finished finished = viewInX({city().string(), "--backend", "cpu", "--size", "640x480", "--screenshot", png});
+  ASSERT_EQ(finished.exitCode, 0) << finished.err;
+  const Image image = readPng(png);
+  ASSERT_EQ(image.width, 640);
+  ASSERT_EQ(image.height, 480);
+  EXPECT_GT(std::set<std::uint32_t>(image.pixels.begin(), image.pixels.end()).size(), 1000u);
+}
+
+TEST_F(Viewer, DrawsSeveralStoresAsLayers) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  const std::string png = file("two.png").string();
+  const Finished finished = viewInX({city().string(), room().string(), "--size", "320x240", "--screenshot", png});
+  ASSERT_EQ(finished.exitCode, 0) << finished.err;
+  EXPECT_EQ(readPng(png).width, 320);
+}
+
+TEST_F(Viewer, AScreenshotThatCannotBeWrittenIsAnError) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  EXPECT_EQ(viewInX({city().string(), "--size", "64x64", "--screenshot", "/nowhere/x.png"}).exitCode, 1);
+}
+
+TEST_F(Viewer, ARunComparedWithItselfIsNotWorseAndWithASlowedOneIs) {
+  const Finished run = bench("a", {"--path", shortPath(), "--settle", "--json"});
+  ASSERT_EQ(run.exitCode, 0) << run.err;
+  EXPECT_EQ(linesOf(run.out).size(), 1u);
+  const std::string a = file("a").string();
+  EXPECT_EQ(runProgram("strata-bench", {"compare", a, a, "--fail-above", "0%"}).exitCode, 0);
+  Json report = Json::parse(readWhole(file("a") / "report.json"));
+  report["measures"]["frame_ms"]["p50"] = report["measures"]["frame_ms"]["p50"].get<double>() * 1.5;
+  std::ofstream(file("slow.json")) << report;
+  const std::string slow = file("slow.json").string();
+  EXPECT_EQ(runProgram("strata-bench", {"compare", a, slow, "--fail-above", "20%"}).exitCode, 1);
+  EXPECT_EQ(runProgram("strata-bench", {"compare", a, slow}).exitCode, 0);
+  EXPECT_EQ(runProgram("strata-bench", {"compare", a, slow, "--fail-above", "much"}).exitCode, 2);
+  EXPECT_EQ(runProgram("strata-bench", {"compare", a}).exitCode, 2);
+}
+
+TEST_F(Viewer, WritesEveryNthFrameAndALineForEach) {
+  const Finished run = bench("frames", {"--path", shortPath(), "--settle", "--screenshot-every", "5"});
+  ASSERT_EQ(run.exitCode, 0) << run.err;
+  const std::vector<std::string> lines = linesOf(readWhole(file("frames") / "frames.csv"));
+  std::size_t pictures = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(file("frames")))
+    pictures += entry.path().extension() == ".png" ? 1 : 0;
+  EXPECT_EQ(pictures, (lines.size() - 2) / 5 + 1);
+}
+
+TEST_F(Viewer, StillsAreTheSameInEveryRun) {
+  ASSERT_EQ(bench("s1", {"--stills"}).exitCode, 0);
+  ASSERT_EQ(bench("s2", {"--stills"}).exitCode, 0);
+  for (const char* name : {"overview.png", "close.png", "detail.png"})
+    EXPECT_EQ(readWhole(file("s1") / name), readWhole(file("s2") / name)) << name;
+}
+
+TEST_F(Viewer, AFolderThatCannotBeMadeIsAnError) {
+  std::ofstream(file("plain")) << "x";
+  expectFailure(bench("plain/below", {"--stills"}));
+}
+
+TEST_F(Viewer, EveryKindOfPathCanBePlayed) {
+  for (const char* kind : {"orbit", "flythrough", "dive", "street"})
+    for (const auto& store : {city(), room()}) {
+      const Finished made = runProgram("strata-bench", {"--make-path", kind, store.string()});
+      ASSERT_EQ(made.exitCode, 0) << made.err;
+      const Json json = Json::parse(made.out);
+      EXPECT_GE(json["keys"].size(), 2u);
+      EXPECT_EQ(json["fov_y"].get<double>(), std::round(json["fov_y"].get<double>()));
+    }
+}
+
+}  // namespace
+}  // namespace strata::test
