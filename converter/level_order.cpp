@@ -1,6 +1,7 @@
 #include "converter/level_order.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -10,6 +11,8 @@ namespace strata {
 namespace {
 
 constexpr std::uint8_t kUnplaced = 0xff;
+/// Order of the passes over a level: each new one falls in the middle of the widest gap.
+constexpr std::array<std::size_t, 16> kPasses{0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
 
 /// Takes every third bit: the inverse of spreadBits.
 std::int64_t compactBits(std::uint64_t v) {
@@ -60,6 +63,11 @@ int finestLevel(const std::vector<std::uint32_t>& cells, std::size_t most) {
   int level = 0;
   while (level + 1 < static_cast<int>(cells.size()) && cells[static_cast<std::size_t>(level) + 1] <= most) ++level;
   return level;
+}
+
+void appendInterleaved(const std::vector<std::uint32_t>& level, std::vector<std::uint32_t>& order) {
+  for (const std::size_t pass : kPasses)
+    for (std::size_t i = pass; i < level.size(); i += kPasses.size()) order.push_back(level[i]);
 }
 
 }  // namespace
@@ -115,9 +123,11 @@ LevelOrder levelOrder(const SortedKeys& points) {
   LevelOrder out;
   out.order.reserve(count);
   std::vector<std::uint8_t> placedAt(count, kUnplaced);
+  std::vector<std::uint32_t> inLevel;
   const int lastLevel = std::min(points.levels, NodeRecord::kMaxPrefixes - 2);
   for (int level = 0; level <= lastLevel && out.order.size() < count; ++level) {
     const int shift = 3 * (points.levels - level);
+    inLevel.clear();
     for (std::size_t first = 0; first < count;) {
       const std::size_t end = cellEnd(points, first, shift);
       const auto isPlaced = [](std::uint8_t l) { return l != kUnplaced; };
@@ -125,15 +135,18 @@ LevelOrder levelOrder(const SortedKeys& points) {
                        placedAt.begin() + static_cast<std::ptrdiff_t>(end), isPlaced)) {
         const std::uint32_t chosen = nearestToCentre(points, first, end, points.levels - level);
         placedAt[chosen] = static_cast<std::uint8_t>(level);
-        out.order.push_back(chosen);
+        inLevel.push_back(chosen);
       }
       first = end;
     }
+    appendInterleaved(inLevel, out.order);
     out.prefix.push_back(static_cast<std::uint32_t>(out.order.size()));
   }
   if (out.order.size() < count || out.prefix.empty()) {
+    inLevel.clear();
     for (std::size_t i = 0; i < count; ++i)
-      if (placedAt[i] == kUnplaced) out.order.push_back(static_cast<std::uint32_t>(i));
+      if (placedAt[i] == kUnplaced) inLevel.push_back(static_cast<std::uint32_t>(i));
+    appendInterleaved(inLevel, out.order);
     out.prefix.push_back(static_cast<std::uint32_t>(count));
   }
   if (count > 0) {

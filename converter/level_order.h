@@ -20,7 +20,8 @@ struct SortedKeys {
 std::vector<std::uint32_t> selectRepresentatives(const SortedKeys& points, std::size_t capacity);
 
 /// Level order of all `points`: level l adds to each occupied cell of the cube's 2^l grid that has no point yet the
-/// one nearest to the cell's centre. Any prefix is an even subsample.
+/// one nearest to the cell's centre. Inside a level the points come in 16 interleaved passes over the Morton order, so
+/// that a prefix that ends inside a level is even as well; batches are a little wider for it.
 struct LevelOrder {
   std::vector<std::uint32_t> order;    ///< indices into the points
   std::vector<std::uint32_t> prefix;   ///< points up to and including level i; at most NodeRecord::kMaxPrefixes,

@@ -28,10 +28,10 @@ struct ViewConstants {
   View view;
   Projection projection;
   std::array<glm::dvec4, 5> planes;
-  glm::dvec4 rowX, rowY;       ///< as Projection's, with the image's centre as origin
-  double pixelsPerMetre = 0;   ///< at depth 1 (perspective) or anywhere (orthographic), at the image's centre
-  double cornerStretch = 1;    ///< how much larger a length may appear in the image's corner
-  bool drawable = false;       ///< false for an empty image or a view that is not finite
+  glm::dvec4 rowX, rowY;      ///< as Projection's, with the image's centre as origin
+  double pixelsPerMetre = 0;  ///< at depth 1 (perspective) or anywhere (orthographic), at the image's centre
+  double cornerStretch = 1;   ///< how much larger a length may appear in the image's corner
+  bool drawable = false;      ///< false for an empty image or a view that is not finite
 };
 ViewConstants viewConstants(const View& view);
 

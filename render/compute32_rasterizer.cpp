@@ -15,9 +15,11 @@ constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 16;
 class Compute32Rasterizer final : public Rasterizer {
  public:
   Compute32Rasterizer(std::unique_ptr<GlContext> context, const RasterizerOptions& options)
-      : pool_(options.threads), scene_(std::move(context), options),
+      : pool_(options.threads),
+        scene_(std::move(context), options),
         program_(scene_.gl(), {{gl::kComputeShader, {"shader_types.h", "batch.glsl", "compute32.comp"}}}),
-        depths_(scene_.gl(), 0, gl::kDynamicCopy), ids_(scene_.gl(), 0, gl::kDynamicCopy) {
+        depths_(scene_.gl(), 0, gl::kDynamicCopy),
+        ids_(scene_.gl(), 0, gl::kDynamicCopy) {
     long long bytes = 0;
     scene_.gl().GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
     maxPixels_ = static_cast<std::size_t>(bytes) / sizeof(std::uint32_t);

@@ -46,8 +46,13 @@ template <int kPlanes>
 class Projector {
  public:
   Projector(const BatchTransform& t, const Viewport& v)
-      : x_(t.x), y_(t.y), depth_(t.depth), eyeX_(hn::Set(kInt, t.eyeCell.x)), eyeY_(hn::Set(kInt, t.eyeCell.y)),
-        eyeZ_(hn::Set(kInt, t.eyeCell.z)), view_(v) {}
+      : x_(t.x),
+        y_(t.y),
+        depth_(t.depth),
+        eyeX_(hn::Set(kInt, t.eyeCell.x)),
+        eyeY_(hn::Set(kInt, t.eyeCell.y)),
+        eyeZ_(hn::Set(kInt, t.eyeCell.z)),
+        view_(v) {}
 
   /// Appends the points of `lanes` that are in the image; returns their number.
   HWY_INLINE std::size_t project(const std::uint32_t* const planes[3], std::size_t at, Mask lanes,
@@ -113,9 +118,12 @@ std::size_t projectAll(const BatchTransform& transform, const Viewport& viewport
 std::size_t project(const BatchTransform& transform, const Viewport& viewport, const std::uint32_t* const planes[3],
                     Precision precision, std::size_t count, std::uint32_t firstId, ProjectedBlock& out) {
   switch (precision) {
-    case Precision::low10: return projectAll<1>(transform, viewport, planes, count, firstId, out);
-    case Precision::medium20: return projectAll<2>(transform, viewport, planes, count, firstId, out);
-    case Precision::full30: return projectAll<3>(transform, viewport, planes, count, firstId, out);
+    case Precision::low10:
+      return projectAll<1>(transform, viewport, planes, count, firstId, out);
+    case Precision::medium20:
+      return projectAll<2>(transform, viewport, planes, count, firstId, out);
+    case Precision::full30:
+      return projectAll<3>(transform, viewport, planes, count, firstId, out);
   }
   return 0;
 }

@@ -8,8 +8,8 @@ namespace strata {
 
 /// Points of one block that fall into the image, in the order they came.
 struct ProjectedBlock {
-  static constexpr std::size_t kPoints = 512;    ///< a block's input and output stay in the first-level cache
-  static constexpr std::size_t kPadding = 64;    ///< lanes that a vector store may write past the last point
+  static constexpr std::size_t kPoints = 512;  ///< a block's input and output stay in the first-level cache
+  static constexpr std::size_t kPadding = 64;  ///< lanes that a vector store may write past the last point
 
   std::uint32_t pixel[kPoints + kPadding];
   std::uint32_t depthBits[kPoints + kPadding];

@@ -30,8 +30,7 @@ std::vector<EGLDisplay> displays() {
     EGLint count = 0;
     if (hasExtension(client, "EGL_EXT_platform_device") && queryDevices != nullptr &&
         queryDevices(16, devices, &count) == EGL_TRUE)
-      for (EGLint i = 0; i < count; ++i)
-        found.push_back(platformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
+      for (EGLint i = 0; i < count; ++i) found.push_back(platformDisplay(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr));
     if (hasExtension(client, "EGL_MESA_platform_surfaceless"))
       found.push_back(platformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
   }
@@ -49,13 +48,9 @@ EGLContext createContext(EGLDisplay display) {
     if (eglChooseConfig(display, wanted, &config, 1, &count) != EGL_TRUE || count == 0) return EGL_NO_CONTEXT;
   }
   for (const EGLint minor : {6, 5, 3}) {
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 minor,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_NONE};
+    const EGLint attributes[] = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, minor, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     const EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, attributes);
     if (context != EGL_NO_CONTEXT) return context;
   }
@@ -67,8 +62,7 @@ class EglContext final : public GlContext {
   EglContext(EGLDisplay display, EGLContext context) : display_(display), context_(context) { makeCurrent(); }
   ~EglContext() override {
     // The display stays initialised: EGL counts no users of it, another context may be one.
-    if (eglGetCurrentContext() == context_)
-      eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
   }
 

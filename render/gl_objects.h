@@ -35,8 +35,8 @@ class GlBuffer {
 };
 
 struct ShaderStage {
-  unsigned kind;                         ///< gl::kComputeShader, ...
-  std::vector<std::string_view> files;   ///< names in render/shaders, compiled as one text after the version line
+  unsigned kind;                        ///< gl::kComputeShader, ...
+  std::vector<std::string_view> files;  ///< names in render/shaders, compiled as one text after the version line
 };
 
 class GlProgram {

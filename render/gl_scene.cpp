@@ -29,8 +29,11 @@ shader::BatchRecord makeRecord(const PlannedBatch& batch, const GpuNode& place) 
 }  // namespace
 
 GlScene::GlScene(std::unique_ptr<GlContext> context, const RasterizerOptions& options)
-    : context_(currentOrThrow(std::move(context))), gl_(loadGlFunctions(*context_)), renderer_(glRenderer(gl_)),
-      nodes_(gl_, options.gpuBytes, options.uploadBytesPerFrame), recordBuffer_(gl_, 0, gl::kStreamDraw) {}
+    : context_(currentOrThrow(std::move(context))),
+      gl_(loadGlFunctions(*context_)),
+      renderer_(glRenderer(gl_)),
+      nodes_(gl_, options.gpuBytes, options.uploadBytesPerFrame),
+      recordBuffer_(gl_, 0, gl::kStreamDraw) {}
 
 DrawStats GlScene::prepare(const RenderList& list, const View& view) {
   planBatches(list, view, plan_);
@@ -59,7 +62,8 @@ DrawStats GlScene::prepare(const RenderList& list, const View& view) {
   records_.clear();
   for (std::uint32_t page = 0; page < byPage.size(); ++page) {
     if (byPage[page].empty()) continue;
-    runs_.push_back({page, static_cast<std::uint32_t>(records_.size()), static_cast<std::uint32_t>(byPage[page].size())});
+    runs_.push_back(
+        {page, static_cast<std::uint32_t>(records_.size()), static_cast<std::uint32_t>(byPage[page].size())});
     records_.insert(records_.end(), byPage[page].begin(), byPage[page].end());
   }
   if (!records_.empty()) recordBuffer_.assign(records_.data(), records_.size() * sizeof(shader::BatchRecord));

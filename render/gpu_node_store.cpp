@@ -16,7 +16,9 @@ std::uint64_t largestBlock(const GlFunctions& gl) {
 }  // namespace
 
 GpuNodeStore::GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame)
-    : gl_(functions), maxBytes_(gpuBytes), maxPageBytes_(std::min(kPageBytes, largestBlock(functions))),
+    : gl_(functions),
+      maxBytes_(gpuBytes),
+      maxPageBytes_(std::min(kPageBytes, largestBlock(functions))),
       uploadBytesPerFrame_(uploadBytesPerFrame) {}
 
 void GpuNodeStore::beginFrame(const RenderList& list) {

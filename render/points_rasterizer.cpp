@@ -79,10 +79,12 @@ class PointTarget {
 class PointsRasterizer final : public Rasterizer {
  public:
   PointsRasterizer(std::unique_ptr<GlContext> context, const RasterizerOptions& options)
-      : pool_(options.threads), scene_(std::move(context), options),
+      : pool_(options.threads),
+        scene_(std::move(context), options),
         program_(scene_.gl(), {{gl::kVertexShader, {"shader_types.h", "batch.glsl", "points.vert"}},
                                {gl::kFragmentShader, {"points.frag"}}}),
-        commands_(scene_.gl(), 0, gl::kStreamDraw), recordNumbers_(scene_.gl(), 0, gl::kStaticDraw),
+        commands_(scene_.gl(), 0, gl::kStreamDraw),
+        recordNumbers_(scene_.gl(), 0, gl::kStaticDraw),
         target_(scene_.gl()) {
     if (scene_.gl().ClipControl == nullptr)
       throw Error("OpenGL", "points needs glClipControl (OpenGL 4.5 or ARB_clip_control), found none");
@@ -138,8 +140,8 @@ class PointsRasterizer final : public Rasterizer {
     for (const PageRun& run : scene_.runs()) {
       scene_.bind(run);
       const std::uintptr_t offset = run.firstRecord * sizeof(DrawCommand);
-      gl.MultiDrawArraysIndirect(gl::kPoints, reinterpret_cast<const void*>(offset),
-                                 static_cast<int>(run.recordCount), 0);
+      gl.MultiDrawArraysIndirect(gl::kPoints, reinterpret_cast<const void*>(offset), static_cast<int>(run.recordCount),
+                                 0);
     }
     ids_.resize(buffer_.pixels.size());
     depths_.resize(buffer_.pixels.size());

@@ -91,8 +91,7 @@ void resolveFrame(const RenderList& list, const DrawOptions& options, Visibility
   dilate(buffer, std::clamp(options.pointSize, 1, 16), pool);
 
   const PointLookup lookup(list);
-  const std::uint32_t background =
-      packColour(options.background.x, options.background.y, options.background.z);
+  const std::uint32_t background = packColour(options.background.x, options.background.y, options.background.z);
   const std::size_t count = buffer.pixels.size();
   frame.width = buffer.width;
   frame.height = buffer.height;

@@ -29,8 +29,8 @@ void printSummary(const BenchOptions& options, const BenchReport& report) {
   const BenchMeasures& m = report.measures;
   if (m.frames > 0)
     std::cout << m.frames << " frames, " << readableMs(m.p50Ms) << " median, " << readableMs(m.p99Ms)
-              << " 99th percentile, " << readableCount(m.pointsPerSecond) << " points/s, " << m.hitches
-              << " hitches (" << m.backend << ", " << m.device << ")\n";
+              << " 99th percentile, " << readableCount(m.pointsPerSecond) << " points/s, " << m.hitches << " hitches ("
+              << m.backend << ", " << m.device << ")\n";
   std::cout << options.output << "/report.html\n";
 }
 

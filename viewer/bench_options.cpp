@@ -10,7 +10,7 @@
 namespace strata {
 namespace {
 
-constexpr int kLargestPoint = 16;      // DrawOptions::pointSize
+constexpr int kLargestPoint = 16;  // DrawOptions::pointSize
 constexpr int kMostLoaders = 64;
 
 /// What CLI11 fills in before names become values.

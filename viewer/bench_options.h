@@ -17,9 +17,9 @@ struct BenchOptions {
 
   Command command = Command::run;
   std::string store;
-  std::string makePath;              ///< kind of path to print
-  std::string path;                  ///< camera path to play; empty = none
-  std::string output;                ///< folder
+  std::string makePath;  ///< kind of path to print
+  std::string path;      ///< camera path to play; empty = none
+  std::string output;    ///< folder
   bool stills = false;
   Backend backend = Backend::automatic;
   PictureSize size;
@@ -29,11 +29,11 @@ struct BenchOptions {
   bool edl = false;
   bool cold = false;
   bool settle = false;
-  int screenshotEvery = 0;           ///< frames; 0 = none
+  int screenshotEvery = 0;  ///< frames; 0 = none
   bool json = false;
 
-  std::string reportA, reportB;      ///< compare: folders or report.json files
-  double failAbove = std::numeric_limits<double>::infinity();   ///< share
+  std::string reportA, reportB;                                ///< compare: folders or report.json files
+  double failAbove = std::numeric_limits<double>::infinity();  ///< share
 };
 
 /// Nothing when help or the version was asked for and has been printed. Throws UsageError.

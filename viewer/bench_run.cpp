@@ -18,11 +18,11 @@
 namespace strata {
 namespace {
 
-constexpr double kNearShare = 1e-4;   // of the scene's diagonal, for scans smaller than a room
-constexpr double kNear = 0.01;        // metres
-constexpr double kStillPointsPerPixel = 4.0;   // leaves no pinholes
-constexpr double kWidestSpacingPx = 6.5;       // between points in a still; beyond, the camera steps back ...
-constexpr double kWantedSpacingPx = 5.0;       // ... for this
+constexpr double kNearShare = 1e-4;           // of the scene's diagonal, for scans smaller than a room
+constexpr double kNear = 0.01;                // metres
+constexpr double kStillPointsPerPixel = 4.0;  // leaves no pinholes
+constexpr double kWidestSpacingPx = 6.5;      // between points in a still; beyond, the camera steps back ...
+constexpr double kWantedSpacingPx = 5.0;      // ... for this
 constexpr int kStepsBack = 3;
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
@@ -96,12 +96,18 @@ StageTime stage(const std::string& name, const std::vector<FrameRecord>& frames,
 
 std::vector<std::pair<std::string, double>> counters(const StreamerStats& s) {
   const auto count = [](std::uint64_t value) { return static_cast<double>(value); };
-  return {{"nodes loaded", count(s.nodesLoaded)},     {"bytes read", count(s.bytesRead)},
-          {"failures", count(s.failures)},            {"nodes given up", count(s.nodesGivenUp)},
-          {"loads dropped", count(s.loadsDropped)},   {"cache hits", count(s.cacheHits)},
-          {"cache misses", count(s.cacheMisses)},     {"evictions", count(s.evictions)},
-          {"refusals", count(s.refusals)},            {"duplicates", count(s.duplicates)},
-          {"over capacity", count(s.overCapacity)},   {"LOD passes", count(s.lodPasses)},
+  return {{"nodes loaded", count(s.nodesLoaded)},
+          {"bytes read", count(s.bytesRead)},
+          {"failures", count(s.failures)},
+          {"nodes given up", count(s.nodesGivenUp)},
+          {"loads dropped", count(s.loadsDropped)},
+          {"cache hits", count(s.cacheHits)},
+          {"cache misses", count(s.cacheMisses)},
+          {"evictions", count(s.evictions)},
+          {"refusals", count(s.refusals)},
+          {"duplicates", count(s.duplicates)},
+          {"over capacity", count(s.overCapacity)},
+          {"LOD passes", count(s.lodPasses)},
           {"peak resident bytes", count(s.peakResidentBytes)}};
 }
 
@@ -110,9 +116,9 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
   const CameraPath path = readCameraPath(options.path);
   Streamer streamer(store, options.streamer);
   const double nearPlane = std::min(kNear, kNearShare * store->info().bounds.diagonal());
-  PlayedPath played = playPath(
-      path, {options.size, draw, options.settle, options.screenshotEvery, options.output, nearPlane}, streamer,
-      rasterizer);
+  PlayedPath played =
+      playPath(path, {options.size, draw, options.settle, options.screenshotEvery, options.output, nearPlane}, streamer,
+               rasterizer);
   if (!played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
   const StreamerStats stats = streamer.stats();
   const std::string backend = report.measures.backend;
@@ -159,10 +165,10 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   Streamer streamer(store, rich);
   const DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
   std::vector<ReportPicture> pictures;
-  double farthest = 0.0;   // the overview stays where it is, each one after it nearer than the one before
+  double farthest = 0.0;  // the overview stays where it is, each one after it nearer than the one before
   for (const Still& still : chooseStills(scene, *store, options.size.width, options.size.height)) {
-    pictures.push_back({still.name, still.name + ".png", false,
-                        takeStill(still, farthest, draw, streamer, rasterizer)});
+    pictures.push_back(
+        {still.name, still.name + ".png", false, takeStill(still, farthest, draw, streamer, rasterizer)});
     writePng(options.output + "/" + pictures.back().file, pictures.back().image);
     farthest = scene.enclosed ? 0.0 : 0.7 * still.subject;
   }
@@ -179,7 +185,8 @@ BenchReport runBench(const BenchOptions& options) {
   std::string pageCache = "left as it was";
   if (options.cold) {
     char text[64];
-    std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed", 100.0 * dropFromPageCache(store->points().name()));
+    std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed",
+                  100.0 * dropFromPageCache(store->points().name()));
     pageCache = text;
     logInfo("page cache: " + pageCache);
   }

@@ -8,11 +8,11 @@
 namespace strata {
 namespace {
 
-constexpr double kSteepest = 89.0 * std::numbers::pi / 180.0;   // elevation of the eye, so that up stays defined
+constexpr double kSteepest = 89.0 * std::numbers::pi / 180.0;  // elevation of the eye, so that up stays defined
 constexpr double kZoomPerNotch = 0.85;
-constexpr double kFlySpeed = 0.5;    // share of the distance to the target, per second
+constexpr double kFlySpeed = 0.5;  // share of the distance to the target, per second
 constexpr double kFastFactor = 5.0;
-constexpr double kNearest = 1e-4;    // metres; a zoom stops here
+constexpr double kNearest = 1e-4;  // metres; a zoom stops here
 
 glm::dvec3 rotated(const glm::dvec3& v, double angle, const glm::dvec3& axis) {
   return glm::angleAxis(angle, axis) * v;
@@ -76,10 +76,10 @@ View zoomed(const View& view, const glm::dvec3& anchor, double factor) {
 View flown(const View& view, const FlyInput& input, double seconds) {
   const ViewBasis basis = viewBasis(view);
   const double speed = kFlySpeed * glm::length(view.target - view.eye) * (input.fast ? kFastFactor : 1.0);
-  const glm::dvec3 shift = (basis.forward * static_cast<double>(input.forward) +
-                            basis.right * static_cast<double>(input.right) +
-                            glm::dvec3(0.0, 0.0, 1.0) * static_cast<double>(input.up)) *
-                           (speed * seconds);
+  const glm::dvec3 shift =
+      (basis.forward * static_cast<double>(input.forward) + basis.right * static_cast<double>(input.right) +
+       glm::dvec3(0.0, 0.0, 1.0) * static_cast<double>(input.up)) *
+      (speed * seconds);
   View next = view;
   next.eye += shift;
   next.target += shift;

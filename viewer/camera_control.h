@@ -65,7 +65,7 @@ class CameraControl {
   View view_;
   Drag drag_ = Drag::none;
   glm::dvec2 cursor_{0.0};
-  glm::dvec3 anchor_{0.0};   ///< pivot of an orbit, grabbed point of a pan
+  glm::dvec3 anchor_{0.0};  ///< pivot of an orbit, grabbed point of a pan
 };
 
 }  // namespace strata

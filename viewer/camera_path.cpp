@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMaxFps = 1000.0;
-constexpr double kMaxFrames = 1e6;   // keeps a mistyped time from running for weeks
+constexpr double kMaxFrames = 1e6;  // keeps a mistyped time from running for weeks
 
 using Json = nlohmann::json;
 
@@ -41,8 +41,8 @@ glm::dvec3 tangentAt(const std::vector<CameraKey>& keys, std::size_t i, glm::dve
   return 2.0 * slope(span) - tangentAt(keys, i == 0 ? 1 : last - 1, member);
 }
 
-glm::dvec3 hermite(const glm::dvec3& p0, const glm::dvec3& m0, const glm::dvec3& p1, const glm::dvec3& m1,
-                   double step, double u) {
+glm::dvec3 hermite(const glm::dvec3& p0, const glm::dvec3& m0, const glm::dvec3& p1, const glm::dvec3& m1, double step,
+                   double u) {
   const double u2 = u * u;
   const double u3 = u2 * u;
   // Written around p0 so that equal points stay exactly equal.
@@ -98,8 +98,8 @@ View viewAt(const CameraPath& path, double t, int width, int height) {
   view.fovY = path.fovY;
   view.width = width;
   view.height = height;
-  const auto after = std::upper_bound(keys.begin(), keys.end(), t,
-                                      [](double value, const CameraKey& key) { return value < key.t; });
+  const auto after =
+      std::upper_bound(keys.begin(), keys.end(), t, [](double value, const CameraKey& key) { return value < key.t; });
   if (after == keys.begin() || after == keys.end()) {
     const CameraKey& still = after == keys.begin() ? keys.front() : keys.back();
     view.eye = still.eye;
@@ -122,9 +122,8 @@ View viewAt(const CameraPath& path, double t, int width, int height) {
 
 std::string cameraPathJson(const CameraPath& path) {
   const auto vector = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}).dump(); };
-  const double degrees = std::round(path.fovY / kDegree * 1e9) / 1e9;   // 60, not 59.99999999999999
-  std::string text = "{\"fps\":" + Json(path.fps).dump() + ",\"fov_y\":" + Json(degrees).dump() +
-                     ",\"keys\":[\n";
+  const double degrees = std::round(path.fovY / kDegree * 1e9) / 1e9;  // 60, not 59.99999999999999
+  std::string text = "{\"fps\":" + Json(path.fps).dump() + ",\"fov_y\":" + Json(degrees).dump() + ",\"keys\":[\n";
   for (const CameraKey& key : path.keys)
     text += std::string(&key == path.keys.data() ? " " : ",\n ") + "{\"t\":" + Json(key.t).dump() +
             ",\"eye\":" + vector(key.eye) + ",\"target\":" + vector(key.target) + ",\"up\":" + vector(key.up) + "}";

@@ -21,10 +21,10 @@ struct CameraKey {
 /// A scripted flight: what a benchmark plays. The curve passes through every key.
 struct CameraPath {
   double fps = 30.0;
-  double fovY = 1.0471975511965976;   ///< radians; degrees in the file
-  std::vector<CameraKey> keys;        ///< at least one, by strictly ascending t
+  double fovY = 1.0471975511965976;  ///< radians; degrees in the file
+  std::vector<CameraKey> keys;       ///< at least one, by strictly ascending t
 
-  double duration() const { return keys.back().t - keys.front().t; }   ///< seconds
+  double duration() const { return keys.back().t - keys.front().t; }  ///< seconds
   /// Frames at k / fps from the first key to the last, both included.
   int frames() const;
 };

@@ -15,7 +15,7 @@ enum class Better { lower, higher, neither };
 
 struct Measure {
   const char* name;
-  const char* pointer;   // JSON pointer inside "measures"
+  const char* pointer;  // JSON pointer inside "measures"
   Better better;
 };
 

@@ -7,8 +7,8 @@
 namespace strata {
 namespace {
 
-constexpr double kMargin = 0.97;   // share of the picture that a fitted view fills
-constexpr int kColumns = 96;       // of the coarse depth picture
+constexpr double kMargin = 0.97;  // share of the picture that a fitted view fills
+constexpr int kColumns = 96;      // of the coarse depth picture
 constexpr int kRows = 54;
 
 }  // namespace
@@ -63,7 +63,8 @@ Composition compose(const Scene& scene, const View& view, double subject) {
     const double half = std::min(0.5 * pixelsAt(coarse, 1.5 * scene.spacing, z), 12.0);
     if (x + half < 0 || y + half < 0 || x - half >= kColumns || y - half >= kRows) continue;
     for (int v = std::max(0, static_cast<int>(y - half)); v <= std::min(kRows - 1, static_cast<int>(y + half)); ++v)
-      for (int u = std::max(0, static_cast<int>(x - half)); u <= std::min(kColumns - 1, static_cast<int>(x + half)); ++u)
+      for (int u = std::max(0, static_cast<int>(x - half)); u <= std::min(kColumns - 1, static_cast<int>(x + half));
+           ++u)
         depth[static_cast<std::size_t>(v * kColumns + u)] =
             std::min(depth[static_cast<std::size_t>(v * kColumns + u)], z);
     const double height = point.z - scene.bounds.min.z;

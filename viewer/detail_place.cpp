@@ -10,9 +10,9 @@
 namespace strata {
 namespace {
 
-constexpr int kCellsAcross = 40;         // of the ball that is searched
-constexpr int kReach = 2;                // cells on each side that have to be dense too
-constexpr double kEnough = 0.8;          // share of the cells that hold fewer points than what counts as full
+constexpr int kCellsAcross = 40;  // of the ball that is searched
+constexpr int kReach = 2;         // cells on each side that have to be dense too
+constexpr double kEnough = 0.8;   // share of the cells that hold fewer points than what counts as full
 
 using Cell = std::tuple<int, int, int>;
 

@@ -6,7 +6,7 @@ namespace strata {
 /// A piece of surface that was scanned densely all around.
 struct DensePlace {
   glm::dvec3 centre{0.0};
-  double spacing = 0.0;   ///< metres between neighbouring points there
+  double spacing = 0.0;  ///< metres between neighbouring points there
 };
 
 /// Reads the nodes that reach into the ball around `centre`, the ball made smaller until they hold at most

@@ -9,7 +9,7 @@
 namespace strata {
 namespace {
 
-constexpr double kWidth = 1000.0;    // of the drawing's own coordinates; the page stretches it
+constexpr double kWidth = 1000.0;  // of the drawing's own coordinates; the page stretches it
 constexpr double kHeight = 300.0;
 constexpr int kGridLines = 4;
 

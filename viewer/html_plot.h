@@ -9,16 +9,16 @@ namespace strata {
 struct PlotLine {
   std::string label;
   std::string style;
-  std::vector<double> values;   ///< one for each x
-  bool filled = false;          ///< down to zero
+  std::vector<double> values;  ///< one for each x
+  bool filled = false;         ///< down to zero
 };
 
 struct Plot {
   std::string title;
-  std::string note;                      ///< one sentence under the title, may be empty
-  std::vector<double> x;                 ///< ascending, seconds
+  std::string note;       ///< one sentence under the title, may be empty
+  std::vector<double> x;  ///< ascending, seconds
   std::vector<PlotLine> lines;
-  std::vector<double> marks;             ///< x of upright ticks at the top
+  std::vector<double> marks;                ///< x of upright ticks at the top
   std::string (*format)(double) = nullptr;  ///< of the y labels
 };
 

@@ -57,7 +57,8 @@ bool Layers::waitUntilComplete(std::chrono::milliseconds timeout) {
   merged_.items.clear();
   bool whole = true;
   for (const auto& streamer : streamers_) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     whole = streamer->waitUntilComplete(std::max(left, std::chrono::milliseconds(0))) && whole;
   }
   return whole;

@@ -9,33 +9,33 @@ namespace strata {
 /// One played frame. Times in milliseconds, measured on the render thread unless the name says otherwise.
 struct FrameRecord {
   int index = 0;
-  double t = 0.0;                  ///< seconds along the path
-  double frameMs = 0.0;            ///< from taking the render list to the finished picture
-  double listMs = 0.0;             ///< taking the render list
+  double t = 0.0;        ///< seconds along the path
+  double frameMs = 0.0;  ///< from taking the render list to the finished picture
+  double listMs = 0.0;   ///< taking the render list
   double uploadMs = 0.0;
   double drawMs = 0.0;
   double resolveMs = 0.0;
-  double settleMs = 0.0;           ///< waited for full detail before the frame (--settle), not in frameMs
-  double lodMs = 0.0;              ///< newest LOD pass, on its own thread
-  std::uint64_t pointsDrawn = 0;   ///< sent through projection
-  std::uint64_t pointsListed = 0;  ///< in the render list, before culling
-  std::uint32_t nodes = 0;         ///< in the render list
-  std::uint32_t missingNodes = 0;  ///< wanted, not there yet
-  std::uint64_t bytesRead = 0;     ///< from the store since it was opened
-  std::uint64_t bytesUploaded = 0; ///< in this frame
+  double settleMs = 0.0;            ///< waited for full detail before the frame (--settle), not in frameMs
+  double lodMs = 0.0;               ///< newest LOD pass, on its own thread
+  std::uint64_t pointsDrawn = 0;    ///< sent through projection
+  std::uint64_t pointsListed = 0;   ///< in the render list, before culling
+  std::uint32_t nodes = 0;          ///< in the render list
+  std::uint32_t missingNodes = 0;   ///< wanted, not there yet
+  std::uint64_t bytesRead = 0;      ///< from the store since it was opened
+  std::uint64_t bytesUploaded = 0;  ///< in this frame
   bool hitch = false;
 };
 
 /// The figures of a run; `--json` prints exactly these.
 struct BenchMeasures {
   int frames = 0;
-  double p50Ms = 0.0, p95Ms = 0.0, p99Ms = 0.0, maxMs = 0.0;   ///< of FrameRecord::frameMs
-  double pointsPerSecond = 0.0;    ///< points drawn over the sum of the frame times
+  double p50Ms = 0.0, p95Ms = 0.0, p99Ms = 0.0, maxMs = 0.0;  ///< of FrameRecord::frameMs
+  double pointsPerSecond = 0.0;                               ///< points drawn over the sum of the frame times
   double pointsDrawnMean = 0.0;
-  double timeToFullDetailMs = 0.0; ///< from an empty cache to the first view complete
-  double lodMs = 0.0;              ///< mean of a LOD pass
+  double timeToFullDetailMs = 0.0;  ///< from an empty cache to the first view complete
+  double lodMs = 0.0;               ///< mean of a LOD pass
   std::uint64_t bytesRead = 0;
-  double cacheHitRate = 0.0;       ///< 0 to 1
+  double cacheHitRate = 0.0;  ///< 0 to 1
   int hitches = 0;
   std::string backend;
   std::string device;
@@ -60,13 +60,13 @@ struct MeasureChange {
   std::string name;
   double a = 0.0, b = 0.0;
   double ratio = 1.0;
-  double worseBy = 0.0;   ///< share by which b is worse than a, 0.05 = 5 %; negative = better; 0 where neither is better
+  double worseBy = 0.0;  ///< share by which b is worse than a, 0.05 = 5 %; negative = better; 0 where neither is better
 };
 
 /// Compares two report.json texts. Throws Error naming `fileA` or `fileB` when one is no report.
 struct Comparison {
   std::vector<MeasureChange> changes;
-  std::vector<std::string> differences;   ///< "backend: cpu / points": what makes the runs unlike
+  std::vector<std::string> differences;  ///< "backend: cpu / points": what makes the runs unlike
 };
 Comparison compareReports(const std::string& fileA, const std::string& jsonA, const std::string& fileB,
                           const std::string& jsonB);

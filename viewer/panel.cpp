@@ -9,8 +9,8 @@
 namespace strata {
 namespace {
 
-constexpr float kWidth = 330.0f;            // pixels
-constexpr float kLeastBudget = 1e5f;        // points
+constexpr float kWidth = 330.0f;      // pixels
+constexpr float kLeastBudget = 1e5f;  // points
 constexpr float kMostBudget = 1e8f;
 
 bool drawSettings(ViewerSettings& settings) {
@@ -77,7 +77,8 @@ bool drawPanel(ViewerSettings& settings, const ViewerStats& stats) {
     ImGui::Separator();
     drawStats(stats);
     ImGui::Separator();
-    ImGui::TextDisabled("left drag orbit, right drag pan, wheel zoom\nW A S D E Q fly, shift faster\nF all, 1 3 7 front side top");
+    ImGui::TextDisabled(
+        "left drag orbit, right drag pan, wheel zoom\nW A S D E Q fly, shift faster\nF all, 1 3 7 front side top");
   }
   ImGui::End();
   return changed;

@@ -17,9 +17,9 @@ struct ViewerSettings {
 /// What the panel shows.
 struct ViewerStats {
   std::string rasterizer;
-  std::string layers;              ///< names of the stores
+  std::string layers;  ///< names of the stores
   std::uint64_t pointsInStores = 0;
-  double frameMs = 0.0;            ///< smoothed
+  double frameMs = 0.0;  ///< smoothed
   DrawStats draw;
   StreamerStats streamer;
   std::uint32_t missingNodes = 0;

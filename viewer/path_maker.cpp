@@ -14,11 +14,11 @@ namespace {
 constexpr double kTau = 2.0 * std::numbers::pi;
 constexpr double kOrbitElevation = std::numbers::pi / 6.0;
 constexpr double kOrbitFovY = std::numbers::pi / 4.0;
-constexpr double kSeconds = 12.0;         // of every path
+constexpr double kSeconds = 12.0;  // of every path
 constexpr int kOrbitKeys = 16;
 constexpr int kFlightKeys = 9;
-constexpr double kWalkerHeight = 1.7;     // metres, or a share of the scene where that is small
-constexpr int kPictureWidth = 1920;       // what paths are framed for
+constexpr double kWalkerHeight = 1.7;  // metres, or a share of the scene where that is small
+constexpr int kPictureWidth = 1920;    // what paths are framed for
 constexpr int kPictureHeight = 1080;
 
 /// Unit vector along the longest horizontal spread of the points.
@@ -132,8 +132,8 @@ CameraPath flythroughPath(const Scene& scene) {
     const glm::dvec2 place = centre + axis * (along * length) + across * (0.35 * width * std::sin(kTau * u));
     const glm::dvec2 ahead = centre + axis * ((along + 0.6) * length) + across * (0.15 * width * std::sin(kTau * u));
     const double clearance = length * (0.30 - 0.18 * std::sin(std::numbers::pi * u));
-    const double z = scene.enclosed ? scene.bounds.min.z + 0.6 * scene.bounds.size().z
-                                    : topAround(grid, place, 3) + clearance;
+    const double z =
+        scene.enclosed ? scene.bounds.min.z + 0.6 * scene.bounds.size().z : topAround(grid, place, 3) + clearance;
     const double targetZ = scene.enclosed ? scene.bounds.min.z + 0.45 * scene.bounds.size().z : groundAt(grid, ahead);
     path.keys.push_back({kSeconds * u, glm::dvec3(place, z), glm::dvec3(ahead, targetZ), {0.0, 0.0, 1.0}});
   }
@@ -153,8 +153,10 @@ CameraPath streetPath(const Scene& scene) {
   CameraPath path;
   for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
     const glm::dvec3 ahead = glm::normalize(walk[i + 1] - walk[i]) * (8.0 * eyeHeight);
-    path.keys.push_back({kSeconds * static_cast<double>(i) / static_cast<double>(walk.size() - 2), walk[i],
-                         walk[i] + glm::dvec3(glm::dvec2(ahead), ahead.z + 0.4 * eyeHeight), {0.0, 0.0, 1.0}});
+    path.keys.push_back({kSeconds * static_cast<double>(i) / static_cast<double>(walk.size() - 2),
+                         walk[i],
+                         walk[i] + glm::dvec3(glm::dvec2(ahead), ahead.z + 0.4 * eyeHeight),
+                         {0.0, 0.0, 1.0}});
   }
   return path;
 }

@@ -10,7 +10,7 @@ namespace strata {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr std::chrono::milliseconds kLongestWait{120'000};   // for full detail of one view
+constexpr std::chrono::milliseconds kLongestWait{120'000};  // for full detail of one view
 constexpr int kMostUploadFrames = 1000;
 constexpr int kReportPictures = 16;        // that the report shows
 constexpr std::size_t kHeldPictures = 24;  // waiting to be encoded; 8 MB each at 1920x1080

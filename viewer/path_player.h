@@ -16,7 +16,7 @@ struct PlayOptions {
   DrawOptions draw;
   bool settle = false;
   int screenshotEvery = 0;
-  std::string folder;      ///< for the pictures
+  std::string folder;  ///< for the pictures
   double nearPlane = 0.01;
 };
 
@@ -25,7 +25,7 @@ struct PlayedPath {
   std::vector<FrameRecord> frames;
   double timeToFullDetailMs = 0.0;
   bool reachedFullDetail = false;
-  std::vector<ReportPicture> pictures;   ///< the ones that the report does not show have no pixels
+  std::vector<ReportPicture> pictures;  ///< the ones that the report does not show have no pixels
 };
 
 /// The whole flight, on the calling thread, which becomes the streamer's render thread.

@@ -13,28 +13,28 @@ namespace strata {
 struct StageTime {
   std::string name;
   double meanMs = 0.0, p95Ms = 0.0;
-  bool onRenderThread = true;   ///< else it runs beside the frames and is no part of their time
+  bool onRenderThread = true;  ///< else it runs beside the frames and is no part of their time
 };
 
 struct ReportPicture {
-  std::string title;   ///< "overview", "frame 30"
-  std::string file;    ///< beside the report
-  bool ofTheFlight = false;   ///< else a still
-  Image image;         ///< without pixels where the report does not show it
+  std::string title;         ///< "overview", "frame 30"
+  std::string file;          ///< beside the report
+  bool ofTheFlight = false;  ///< else a still
+  Image image;               ///< without pixels where the report does not show it
 };
 
 /// All that a run leaves behind, in words and numbers.
 struct BenchReport {
-  std::string program;     ///< "strata-bench 0.1.0"
-  std::string when;        ///< ISO 8601, UTC
+  std::string program;  ///< "strata-bench 0.1.0"
+  std::string when;     ///< ISO 8601, UTC
   std::string storePath;
-  std::string storeName;   ///< for the headline
-  std::vector<std::pair<std::string, std::string>> store;     ///< facts about the store, to be read
-  std::vector<std::pair<std::string, std::string>> options;   ///< of this run
+  std::string storeName;                                     ///< for the headline
+  std::vector<std::pair<std::string, std::string>> store;    ///< facts about the store, to be read
+  std::vector<std::pair<std::string, std::string>> options;  ///< of this run
   Machine machine;
   BenchMeasures measures;  ///< frames = 0: no path was played, the report shows pictures only
   std::vector<StageTime> stages;
-  std::vector<std::pair<std::string, double>> counters;       ///< of the streamer, by name
+  std::vector<std::pair<std::string, double>> counters;  ///< of the streamer, by name
   std::vector<FrameRecord> frames;
   std::vector<ReportPicture> pictures;
 };

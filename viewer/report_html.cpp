@@ -7,7 +7,7 @@
 namespace strata {
 namespace {
 
-constexpr int kEmbeddedWidth = 1280;   // pictures are shrunk to this before they are embedded
+constexpr int kEmbeddedWidth = 1280;  // pictures are shrunk to this before they are embedded
 
 constexpr const char* kStyle = R"css(
 :root{--paper:#fcfbf9;--card:#fff;--ink:#23282e;--soft:#6a727b;--rule:#e4e1db;--a:#2b6c8f;--b:#b3622b;--warn:#a3342b}
@@ -144,15 +144,19 @@ std::string plotsHtml(const BenchReport& report) {
     return PlotLine{label, style, column(frames, get), filled};
   };
 
-  Plot time{"Frame time over the path", hitches.empty() ? "" : "Hitches are marked at the top.", t, {}, hitches,
-            readableMs};
+  Plot time{
+      "Frame time over the path", hitches.empty() ? "" : "Hitches are marked at the top.", t, {}, hitches, readableMs};
   time.lines.push_back(line("a frame", "a", true, [](const FrameRecord& f) { return f.frameMs; }));
   time.lines.push_back({"99th percentile", "muted", std::vector<double>(t.size(), report.measures.p99Ms), false});
   Plot points{"Points over the path", "Drawn: sent through projection after culling.", t, {}, {}, readableCount};
   points.lines.push_back(line("in the render list", "b", false, [](const FrameRecord& f) { return f.pointsListed; }));
   points.lines.push_back(line("drawn", "a", true, [](const FrameRecord& f) { return f.pointsDrawn; }));
-  Plot missing{"Missing nodes over the path", "Wanted by the view, not loaded yet: a coarser parent stands in.", t, {},
-               {}, readableCount};
+  Plot missing{"Missing nodes over the path",
+               "Wanted by the view, not loaded yet: a coarser parent stands in.",
+               t,
+               {},
+               {},
+               readableCount};
   missing.lines.push_back(line("missing", "b", true, [](const FrameRecord& f) { return f.missingNodes; }));
   Plot bytes{"Bytes read from the store", "", t, {}, {}, readableBytes};
   bytes.lines.push_back(line("since the start", "a", true, [](const FrameRecord& f) { return f.bytesRead; }));
@@ -166,8 +170,8 @@ std::string stagesHtml(const std::vector<StageTime>& stages) {
   std::string rows = "<table><tr><th>stage</th><th class=\"n\">mean</th><th class=\"n\">95th percentile</th></tr>";
   for (const StageTime& stage : stages) {
     if (stage.onRenderThread && total > 0.0)
-      bar += "<i title=\"" + htmlEscape(stage.name) + "\" style=\"width:" +
-             std::to_string(100.0 * stage.meanMs / total) + "%\"></i>";
+      bar += "<i title=\"" + htmlEscape(stage.name) +
+             "\" style=\"width:" + std::to_string(100.0 * stage.meanMs / total) + "%\"></i>";
     rows += "<tr><td>" + htmlEscape(stage.name) + (stage.onRenderThread ? "" : " <small>(its own thread)</small>") +
             "</td><td class=\"n\">" + readableMs(stage.meanMs) + "</td><td class=\"n\">" + readableMs(stage.p95Ms) +
             "</td></tr>";
@@ -188,15 +192,15 @@ std::string reportHtml(const BenchReport& report) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>" +
-      htmlEscape(report.storeName) + " – Strata</title><style>" + kStyle + "</style></head><body><main>\n<header><h1>" +
+      htmlEscape(report.storeName) + " – Strata</title><style>" + kStyle +
+      "</style></head><body><main>\n<header><h1>" +
       htmlEscape(report.storeName) + "</h1><p class=\"soft\">" + htmlEscape(report.program) + ", " +
       htmlEscape(report.when) + ". " + htmlEscape(report.measures.backend) + " on " +
       htmlEscape(report.measures.device) + ".</p></header>\n";
   html += stillsHtml(report.pictures);
   if (report.measures.frames > 0)
     html += keyFigures(report.measures) + "<h2>Along the path</h2>\n" + plotsHtml(report) +
-            flightPicturesHtml(report.pictures) +
-            "<h2>Where a frame's time goes</h2>\n" + stagesHtml(report.stages);
+            flightPicturesHtml(report.pictures) + "<h2>Where a frame's time goes</h2>\n" + stagesHtml(report.stages);
   const Machine& machine = report.machine;
   std::vector<std::pair<std::string, std::string>> machineFacts{
       {"processor", machine.cpu},

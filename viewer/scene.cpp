@@ -10,10 +10,10 @@
 namespace strata {
 namespace {
 
-constexpr double kTrimmedShare = 0.001;    // of the points beyond either end of an axis that bounds may leave out
-constexpr double kTrimMargin = 0.08;       // of the trimmed size, added again on both sides
-constexpr double kSlab = 0.15;             // of the height: what counts as floor and as ceiling
-constexpr double kEnclosedShare = 0.55;    // of the columns with data that have both
+constexpr double kTrimmedShare = 0.001;  // of the points beyond either end of an axis that bounds may leave out
+constexpr double kTrimMargin = 0.08;     // of the trimmed size, added again on both sides
+constexpr double kSlab = 0.15;           // of the height: what counts as floor and as ceiling
+constexpr double kEnclosedShare = 0.55;  // of the columns with data that have both
 
 Box robustBounds(std::vector<glm::dvec3>& points) {
   Box whole;

@@ -12,10 +12,10 @@ namespace strata {
 
 /// What choosing camera positions needs to know of a scan: a spatially even sample of its points.
 struct Scene {
-  Box bounds;                       ///< where the data is, without lone points far off
-  std::vector<glm::dvec3> points;   ///< inside bounds, evenly spread over the surfaces
-  double spacing = 0.0;             ///< typical distance between neighbours in `points`, metres
-  bool enclosed = false;            ///< a room or a tunnel: floor below and ceiling above nearly everywhere
+  Box bounds;                      ///< where the data is, without lone points far off
+  std::vector<glm::dvec3> points;  ///< inside bounds, evenly spread over the surfaces
+  double spacing = 0.0;            ///< typical distance between neighbours in `points`, metres
+  bool enclosed = false;           ///< a room or a tunnel: floor below and ceiling above nearly everywhere
 
   double diagonal() const { return bounds.diagonal(); }
   /// Height over horizontal extent: near 0 for a landscape, above 0.5 for a statue.
@@ -32,14 +32,14 @@ Scene surveyScene(const Store& store);
 /// The deepest node over a place, which says how densely it was scanned.
 struct LocalNode {
   std::uint32_t index = 0;
-  double spacing = 0.0;             ///< metres between the node's points
+  double spacing = 0.0;  ///< metres between the node's points
 };
 LocalNode localNode(const Store& store, const glm::dvec3& place);
 
 /// Ground and obstacles on a horizontal grid over Scene::bounds.
 class HeightGrid {
  public:
-  static constexpr int kCells = 48;   // along the longer side
+  static constexpr int kCells = 48;  // along the longer side
 
   explicit HeightGrid(const Scene& scene);
 
@@ -63,7 +63,7 @@ class HeightGrid {
   double cell_ = 1.0;
   int columns_ = 1, rows_ = 1;
   std::vector<int> count_;
-  std::vector<double> ground_, top_;   ///< of cells without data: of the nearest cell that has some
+  std::vector<double> ground_, top_;  ///< of cells without data: of the nearest cell that has some
 };
 
 }  // namespace strata

@@ -54,7 +54,8 @@ void Screen::upload(const Frame& frame) {
 }
 
 Image Screen::read(int width, int height) const {
-  Image image{width, height, std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
+  Image image{width, height,
+              std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.pixelStorei(kPackAlignment, 4);
   gl_.readPixels(0, 0, width, height, kRgba, kUnsignedByte, image.pixels.data());
   // OpenGL's first row is the lowest. A window's own alpha says nothing.

@@ -15,18 +15,18 @@ namespace {
 
 constexpr double kFovY = 45.0 * std::numbers::pi / 180.0;
 constexpr double kRoomFovY = 75.0 * std::numbers::pi / 180.0;
-constexpr int kDirections = 24;                    // compass directions that are tried
-constexpr double kFlatElevation = 0.62;            // radians over the horizon for a landscape ...
-constexpr double kTallElevation = 0.28;            // ... and for a statue
-constexpr double kCloseRadius = 0.13;              // of the scene's diagonal
-constexpr double kDetailSpacingPx = 3.5;           // between neighbouring points in the detail picture
-constexpr int kBlock = 24;                         // pixels; in blocks of this the points are counted
-constexpr std::size_t kLeastInBlock = 6;           // points; fewer are an edge or the haze around one
-constexpr float kLayerDepth = 1.06f;               // what lies this much deeper is seen through the gaps of the front
-constexpr double kClosedShare = 65.0;              // per cent of the picture's blocks that should look closed
-constexpr double kOverlap = 1.4;                   // points do not stand on a grid
-constexpr int kLargestPoint = 9;
-constexpr double kBlockedCost = 3.0;               // against coverage, when views are compared
+constexpr int kDirections = 24;           // compass directions that are tried
+constexpr double kFlatElevation = 0.62;   // radians over the horizon for a landscape ...
+constexpr double kTallElevation = 0.28;   // ... and for a statue
+constexpr double kCloseRadius = 0.13;     // of the scene's diagonal
+constexpr double kDetailSpacingPx = 3.5;  // between neighbouring points in the detail picture
+constexpr int kBlock = 24;                // pixels; in blocks of this the points are counted
+constexpr std::size_t kLeastInBlock = 6;  // points; fewer are an edge or the haze around one
+constexpr float kLayerDepth = 1.06f;      // what lies this much deeper is seen through the gaps of the front
+constexpr double kClosedShare = 65.0;     // per cent of the picture's blocks that should look closed
+constexpr double kOverlap = 1.4;          // points do not stand on a grid
+constexpr int kLargestPoint = 12;
+constexpr double kBlockedCost = 3.0;  // against coverage, when views are compared
 constexpr double kLayeringGain = 0.3;
 
 double elevationFor(const Scene& scene) {
@@ -77,7 +77,7 @@ View roomView(const Scene& scene, int width, int height) {
 
 /// Where much surface lies close together: the occupied voxels, and for each how many others are near.
 struct Spot {
-  glm::dvec3 centre{0.0};   ///< mean of the surface around the best place
+  glm::dvec3 centre{0.0};  ///< mean of the surface around the best place
   double radius = 0.0;
 };
 
@@ -98,16 +98,16 @@ Spot richestSpot(const Scene& scene, const Store& store) {
     voxel.sum += p;
     voxel.count += 1.0;
   }
-  std::vector<std::pair<glm::dvec3, double>> places;   // centre, weight
+  std::vector<std::pair<glm::dvec3, double>> places;  // centre, weight
   std::vector<double> spacings;
   for (const auto& [key, voxel] : voxels) {
     places.emplace_back(voxel.sum / voxel.count, localNode(store, voxel.sum / voxel.count).spacing);
     spacings.push_back(places.back().second);
   }
-  std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2), spacings.end());
+  std::nth_element(spacings.begin(), spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2),
+                   spacings.end());
   const double typical = spacings[spacings.size() / 2];
-  for (auto& [place, weight] : places)
-    weight = weight > 0.0 ? std::clamp(typical / weight, 0.25, 1.5) : 1.0;
+  for (auto& [place, weight] : places) weight = weight > 0.0 ? std::clamp(typical / weight, 0.25, 1.5) : 1.0;
   // In a fixed order, so that ties and rounding fall the same way in every run.
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) {
     return std::tie(a.first.x, a.first.y, a.first.z) < std::tie(b.first.x, b.first.y, b.first.z);
@@ -133,9 +133,7 @@ Spot richestSpot(const Scene& scene, const Store& store) {
   return spot;
 }
 
-bool inside(const Scene& scene, const glm::dvec3& place) {
-  return !scene.enclosed || scene.bounds.contains(place);
-}
+bool inside(const Scene& scene, const glm::dvec3& place) { return !scene.enclosed || scene.bounds.contains(place); }
 
 /// Unit normal of a flat node's contour, or nothing.
 std::optional<glm::dvec3> surfaceNormal(const NodeRecord& node) {
@@ -146,8 +144,10 @@ std::optional<glm::dvec3> surfaceNormal(const NodeRecord& node) {
   const double longest = *std::max_element(lengths, lengths + 3);
   if (static_cast<ContourClass>(node.contourClass) != ContourClass::planar || lengths[thin] > 0.3 * longest)
     return std::nullopt;
-  const glm::dvec3 a(node.halfAxis[(thin + 1) % 3][0], node.halfAxis[(thin + 1) % 3][1], node.halfAxis[(thin + 1) % 3][2]);
-  const glm::dvec3 b(node.halfAxis[(thin + 2) % 3][0], node.halfAxis[(thin + 2) % 3][1], node.halfAxis[(thin + 2) % 3][2]);
+  const glm::dvec3 a(node.halfAxis[(thin + 1) % 3][0], node.halfAxis[(thin + 1) % 3][1],
+                     node.halfAxis[(thin + 1) % 3][2]);
+  const glm::dvec3 b(node.halfAxis[(thin + 2) % 3][0], node.halfAxis[(thin + 2) % 3][1],
+                     node.halfAxis[(thin + 2) % 3][2]);
   const glm::dvec3 normal = glm::cross(a, b);
   return glm::length(normal) > 0.0 ? std::optional(glm::normalize(normal)) : std::nullopt;
 }
@@ -224,8 +224,8 @@ double frontSpacing(const Frame& frame) {
       depths.clear();
       for (int v = 0; v < kBlock; ++v)
         for (int u = 0; u < kBlock; ++u) {
-          const std::size_t pixel = static_cast<std::size_t>(y + v) * static_cast<std::size_t>(frame.width) +
-                                    static_cast<std::size_t>(x + u);
+          const std::size_t pixel =
+              static_cast<std::size_t>(y + v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x + u);
           if (frame.pointId[pixel] != Frame::kNoPoint) depths.push_back(frame.depth[pixel]);
         }
       if (depths.size() < kLeastInBlock) continue;

@@ -12,9 +12,9 @@ namespace strata {
 
 /// A place worth a picture.
 struct Still {
-  std::string name;    ///< "overview", "close", "detail"
+  std::string name;  ///< "overview", "close", "detail"
   View view;
-  double subject = 0.0;   ///< metres from the eye to what is shown
+  double subject = 0.0;  ///< metres from the eye to what is shown
 };
 
 /// Unit vector from the eye towards the scene for a compass direction (0 = looking north) and a height over the
@@ -26,9 +26,9 @@ View fittedView(const Scene& scene, const glm::dvec3& direction, int width, int 
 
 /// How a view would look, from a coarse depth picture of the scene's sample.
 struct Composition {
-  double coverage = 0.0;   ///< share of the picture with something in it
-  double blocked = 0.0;    ///< share covered by things nearer than half the subject's distance
-  double layering = 0.0;   ///< correlation of height with depth, -1 to 1: positive = tall things stand behind low ones
+  double coverage = 0.0;  ///< share of the picture with something in it
+  double blocked = 0.0;   ///< share covered by things nearer than half the subject's distance
+  double layering = 0.0;  ///< correlation of height with depth, -1 to 1: positive = tall things stand behind low ones
 };
 Composition compose(const Scene& scene, const View& view, double subject);
 

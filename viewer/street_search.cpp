@@ -8,10 +8,10 @@
 namespace strata {
 namespace {
 
-constexpr double kObstacleCost = 12.0;   // of a full cell, in steps through a free one
-constexpr double kNoDataCost = 6.0;      // where nothing was scanned there is nothing to see either
-constexpr double kOpenCost = 2.0;        // of a cell with nothing tall in sight: a street runs along something
-constexpr int kSight = 3;                // cells
+constexpr double kObstacleCost = 12.0;  // of a full cell, in steps through a free one
+constexpr double kNoDataCost = 6.0;     // where nothing was scanned there is nothing to see either
+constexpr double kOpenCost = 2.0;       // of a cell with nothing tall in sight: a street runs along something
+constexpr int kSight = 3;               // cells
 constexpr int kSmoothingRounds = 6;
 
 /// Whether something stands well above the head within kSight cells.
@@ -80,8 +80,8 @@ std::vector<std::size_t> cheapestWay(const HeightGrid& grid, const std::vector<d
         open.push({reached, next});
       }
   }
-  std::size_t cell = *std::min_element(goals.begin(), goals.end(),
-                                       [&](std::size_t a, std::size_t b) { return best[a] < best[b]; });
+  std::size_t cell =
+      *std::min_element(goals.begin(), goals.end(), [&](std::size_t a, std::size_t b) { return best[a] < best[b]; });
   std::vector<std::size_t> way{cell};
   while (from[cell] != kNone) way.push_back(cell = from[cell]);
   std::reverse(way.begin(), way.end());

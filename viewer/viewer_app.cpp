@@ -17,10 +17,10 @@
 namespace strata {
 namespace {
 
-constexpr std::chrono::milliseconds kLongestWait{120'000};   // for a screenshot's full detail
-constexpr double kIdleWait = 0.25;    // seconds between frames where nothing happens
+constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot's full detail
+constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
 constexpr int kPanelFrames = 2;
-constexpr double kSmoothing = 0.1;    // share of the newest frame in the frame time shown
+constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
 
 std::vector<std::shared_ptr<const Store>> openStores(const std::vector<std::string>& paths) {
   std::vector<std::shared_ptr<const Store>> stores;
@@ -69,7 +69,7 @@ class ViewerApp {
     bool idle = false;
     while (!window_.closed()) {
       const WindowInput input = window_.beginFrame(idle ? kIdleWait : 0.0);
-      if (input.width == 0 || input.height == 0) {   // minimised
+      if (input.width == 0 || input.height == 0) {  // minimised
         window_.finishFrame();
         idle = true;
         continue;
@@ -107,8 +107,9 @@ class ViewerApp {
     const int x = static_cast<int>(std::floor(cursor.x));
     const int y = static_cast<int>(std::floor(cursor.y));
     if (x < 0 || y < 0 || x >= frame_.width || y >= frame_.height) return std::nullopt;
-    const float depth = frame_.depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) +
-                                     static_cast<std::size_t>(x)];
+    const float depth =
+        frame_
+            .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x)];
     if (!std::isfinite(depth)) return std::nullopt;
     return worldPoint(control_.view(), cursor, static_cast<double>(depth));
   }

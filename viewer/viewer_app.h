@@ -20,7 +20,7 @@ struct ViewerOptions {
   std::optional<ColourMode> colour;
   int pointSize = 2;
   bool edl = true;
-  std::string screenshot;   ///< file; draws one frame in full detail, window and all, and ends
+  std::string screenshot;  ///< file; draws one frame in full detail, window and all, and ends
 };
 
 /// Nothing when help or the version was asked for and has been printed. Throws UsageError.

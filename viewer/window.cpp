@@ -13,7 +13,7 @@
 namespace strata {
 namespace {
 
-constexpr double kLongestStep = 0.1;   // seconds a flight moves in one frame, however long the frame took
+constexpr double kLongestStep = 0.1;  // seconds a flight moves in one frame, however long the frame took
 
 Error windowError() {
   const char* description = nullptr;

@@ -13,15 +13,15 @@ namespace strata {
 /// the panel is not in here.
 struct WindowInput {
   int width = 0, height = 0;
-  double seconds = 0.0;          ///< since the last frame
+  double seconds = 0.0;  ///< since the last frame
   glm::dvec2 cursor{0.0};
-  bool leftPressed = false;      ///< went down in this frame
+  bool leftPressed = false;  ///< went down in this frame
   bool rightPressed = false;
-  bool dragging = false;         ///< a button is down
-  double wheel = 0.0;            ///< notches, positive away from the user
-  FlyInput fly;                  ///< W A S D, E and Q for up and down, shift
-  bool frameAll = false;         ///< F
-  bool front = false, side = false, top = false;   ///< 1, 3, 7
+  bool dragging = false;                          ///< a button is down
+  double wheel = 0.0;                             ///< notches, positive away from the user
+  FlyInput fly;                                   ///< W A S D, E and Q for up and down, shift
+  bool frameAll = false;                          ///< F
+  bool front = false, side = false, top = false;  ///< 1, 3, 7
 
   /// Nothing that changes the picture.
   bool idle() const {
@@ -51,7 +51,7 @@ class Window {
   static GlContext::GetProc getProc();
 
  private:
-  struct Parts;   // GLFW's and ImGui's own
+  struct Parts;  // GLFW's and ImGui's own
   std::unique_ptr<Parts> parts_;
 };
 

@@ -12,7 +12,8 @@ constexpr std::uint32_t kPointsOfGround = 8000000;  // 10 million with what stan
 constexpr int kTiles = 14;                          // about 40 000 points a node
 
 const RenderList& town() {
-  static const RenderList list = test::makeTown(glm::dvec3(456789.0, 5412345.0, 300.0), 500.0, kPointsOfGround, 1, kTiles);
+  static const RenderList list =
+      test::makeTown(glm::dvec3(456789.0, 5412345.0, 300.0), 500.0, kPointsOfGround, 1, kTiles);
   return list;
 }
 

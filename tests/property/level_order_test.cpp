@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <random>
 #include <set>
@@ -109,6 +110,19 @@ TEST(LevelOrder, FullLevelsOfADensePlaneAreMoreEvenThanRandomPoints) {
     std::vector<glm::dvec2> shown;
     for (std::uint32_t i = 0; i < levels.prefix[level]; ++i) shown.push_back(plane[levels.order[i]].second);
     EXPECT_LE(nearestNeighbourVariation(shown), 0.45) << "level " << level;
+  }
+}
+
+TEST(LevelOrder, EveryPrefixSpreadsOverAllQuartersOfAPlane) {
+  const auto keys = planeKeys(60000, 17);
+  const LevelOrder levels = levelOrder({keys, kLevels});
+  for (std::size_t prefix = 400; prefix < keys.size(); prefix = prefix * 21 / 20) {
+    std::map<std::uint64_t, std::size_t> quarters;
+    for (std::size_t i = 0; i < prefix; ++i) ++quarters[keys[levels.order[i]] >> (3 * (kLevels - 1))];
+    ASSERT_EQ(quarters.size(), 4u);
+    for (const auto& [quarter, count] : quarters)
+      EXPECT_NEAR(static_cast<double>(count), static_cast<double>(prefix) / 4.0, static_cast<double>(prefix) * 0.06)
+          << "prefix " << prefix;
   }
 }
 

@@ -26,7 +26,7 @@ inline std::unique_ptr<GlContext> tryContext(ContextKind kind, std::string& reas
 }  // namespace strata::test
 
 /// Makes `context` of `kind`, or skips the test with the reason.
-#define STRATA_REQUIRE_CONTEXT(context, kind)                                   \
-  std::string context##Reason;                                                  \
+#define STRATA_REQUIRE_CONTEXT(context, kind)                                                   \
+  std::string context##Reason;                                                                  \
   std::unique_ptr<strata::GlContext> context = strata::test::tryContext(kind, context##Reason); \
   if (context == nullptr) GTEST_SKIP() << context##Reason

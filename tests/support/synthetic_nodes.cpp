@@ -94,7 +94,8 @@ RenderList makeTown(const glm::dvec3& centre, double side, std::uint32_t count, 
   const auto add = [&](const glm::dvec3& p) {  // in units of the side
     const int column = std::clamp(static_cast<int>(p.x * tiles), 0, tiles - 1);
     const int row = std::clamp(static_cast<int>(p.y * tiles), 0, tiles - 1);
-    parts[static_cast<std::size_t>((p.z > 0.05 ? tiles * tiles : 0) + row * tiles + column)].push_back(centre + (p - glm::dvec3(0.5, 0.5, 0.0)) * side);
+    parts[static_cast<std::size_t>((p.z > 0.05 ? tiles * tiles : 0) + row * tiles + column)].push_back(
+        centre + (p - glm::dvec3(0.5, 0.5, 0.0)) * side);
   };
   for (std::uint32_t i = 0; i < count; ++i) {
     const double x = unit(random), y = unit(random);

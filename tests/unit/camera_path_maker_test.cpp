@@ -54,10 +54,10 @@ double shareInPicture(const Scene& scene, const View& view) {
   int seen = 0;
   for (const glm::dvec3& p : scene.points) {
     const glm::dvec2 pixel = pixelOf(view, p);
-    seen += depthOf(view, p) > 0.0 && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= view.width &&
-                    pixel.y <= view.height
-                ? 1
-                : 0;
+    seen +=
+        depthOf(view, p) > 0.0 && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= view.width && pixel.y <= view.height
+            ? 1
+            : 0;
   }
   return static_cast<double>(seen) / static_cast<double>(scene.points.size());
 }

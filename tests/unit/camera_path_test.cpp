@@ -60,7 +60,7 @@ TEST(CameraPath, HasNoJumpInPlaceOrVelocityAtAKey) {
 
 TEST(CameraPath, MovesAtConstantSpeedThroughKeysSetAtConstantSpeed) {
   CameraPath path;
-  for (const double t : {0.0, 1.0, 1.5, 4.0, 4.25})   // uneven keys on one straight, even motion
+  for (const double t : {0.0, 1.0, 1.5, 4.0, 4.25})  // uneven keys on one straight, even motion
     path.keys.push_back({t, {3.0 * t, -2.0 * t, t}, {3.0 * t, -2.0 * t + 10.0, t}, {0.0, 0.0, 1.0}});
   for (double t = 0.0; t <= 4.25; t += 0.05)
     EXPECT_LT(glm::distance(viewAt(path, t, 1, 1).eye, glm::dvec3(3.0 * t, -2.0 * t, t)), 1e-12) << t;
@@ -133,8 +133,7 @@ TEST(CameraPath, SaysWhatIsWrongAndWhere) {
             "path.json: key 1: eye, found [0,0] (expected three numbers)");
   EXPECT_EQ(refusal(withKeys(R"({"t":0,"eye":[1,0,0],"target":[1,0,0]})")),
             "path.json: key 1: eye and target are the same point");
-  EXPECT_EQ(refusal(R"({"fps":0,"keys":[)" + key + "]}"),
-            "path.json: fps, found 0.0 (expected above 0, at most 1000)");
+  EXPECT_EQ(refusal(R"({"fps":0,"keys":[)" + key + "]}"), "path.json: fps, found 0.0 (expected above 0, at most 1000)");
   EXPECT_EQ(refusal(R"({"fov_y":190,"keys":[)" + key + "]}"),
             "path.json: fov_y, found 190 (expected 1 to 170 degrees)");
   EXPECT_EQ(refusal(R"({"fps":"x","keys":[)" + key + "]}"), "path.json: fps is no number, found \"x\"");

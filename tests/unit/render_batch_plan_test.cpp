@@ -39,8 +39,9 @@ TEST(BatchPlan, MovesNoVisiblePointByMoreThanHalfAPixelWhateverThePrecision) {
         for (std::uint32_t i = batch.firstPoint; i < batch.firstPoint + batch.pointCount; ++i) {
           const glm::dvec3 exact = pointPosition(*node, batch, i, Precision::full30);
           const glm::dvec2 wanted = pixelOf(constants.projection, exact);
-          const bool seen = glm::dot(constants.projection.rowDepth, glm::dvec4(exact - moved.eye, 1.0)) > moved.nearPlane &&
-                            wanted.x >= 0.0 && wanted.y >= 0.0 && wanted.x < moved.width && wanted.y < moved.height;
+          const bool seen =
+              glm::dot(constants.projection.rowDepth, glm::dvec4(exact - moved.eye, 1.0)) > moved.nearPlane &&
+              wanted.x >= 0.0 && wanted.y >= 0.0 && wanted.x < moved.width && wanted.y < moved.height;
           if (!seen) continue;
           const glm::dvec2 found = pixelOf(constants.projection, pointPosition(*node, batch, i, precision));
           ASSERT_LE(glm::distance(wanted, found), 0.5);
@@ -102,7 +103,8 @@ TEST(BatchPlan, CullsNoBatchWithAPointInTheImage) {
           const glm::dvec3 position = pointPosition(*item.node, batch, i, Precision::medium20);
           const glm::dvec2 pixel = pixelOf(plan.constants.projection, position);
           const double depth = glm::dot(plan.constants.projection.rowDepth, glm::dvec4(position - view.eye, 1.0));
-          EXPECT_FALSE(depth >= view.nearPlane && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < 640.0 && pixel.y < 480.0);
+          EXPECT_FALSE(depth >= view.nearPlane && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < 640.0 &&
+                       pixel.y < 480.0);
         }
       }
       firstId += item.pointCount;

@@ -76,9 +76,10 @@ TEST(CpuRasterizer, DrawsOnlyThePrefixOfEachNode) {
 
 TEST(CpuRasterizer, GivesTheOraclesPictureOfCubesOfEverySize) {
   for (const double side : {0.01, 1.0, 1000.0, 100000.0}) {
-    const RenderList list = test::makeList(
-        {test::makeNode({}, randomPoints(50000, kUtm, glm::dvec3(side), 5), side * 1e-8, 3000),
-         test::makeNode(NodeKey{}.child(3), randomPoints(50000, kUtm, side * glm::dvec3(2.0, 1e-3, 1.0), 6), side * 1e-4)});
+    const RenderList list =
+        test::makeList({test::makeNode({}, randomPoints(50000, kUtm, glm::dvec3(side), 5), side * 1e-8, 3000),
+                        test::makeNode(NodeKey{}.child(3),
+                                       randomPoints(50000, kUtm, side * glm::dvec3(2.0, 1e-3, 1.0), 6), side * 1e-4)});
     for (const View& view : test::viewsAround(test::boundsOf(list), 12, 512, 512)) expectOraclesPicture(list, view);
   }
 }
@@ -89,7 +90,8 @@ TEST(CpuRasterizer, GivesTheSameBitsWithOneAndTwoThreads) {
   options.pointSize = 2;
   options.edl = true;
   for (const View& view : test::viewsAround(test::boundsOf(list), 8, 512, 512)) {
-    const Frame one = drawn(list, view, 1, options), two = drawn(list, view, 2, options), again = drawn(list, view, 2, options);
+    const Frame one = drawn(list, view, 1, options), two = drawn(list, view, 2, options),
+                again = drawn(list, view, 2, options);
     EXPECT_EQ(one.pointId, two.pointId);
     EXPECT_EQ(one.depth, two.depth);
     EXPECT_EQ(one.colour, two.colour);

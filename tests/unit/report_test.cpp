@@ -119,7 +119,7 @@ TEST(Report, HasNoExternalReferenceAndNoScript) {
   }
   std::size_t pictures = 0;
   for (std::size_t at = html.find("src="); at != std::string::npos; at = html.find("src=", at + 1)) {
-    if (html.compare(at, 6, "src=x&") == 0) continue;   // the escaped name of a source
+    if (html.compare(at, 6, "src=x&") == 0) continue;  // the escaped name of a source
     EXPECT_EQ(html.compare(at, 27, "src=\"data:image/png;base64,"), 0);
     ++pictures;
   }
