@@ -110,17 +110,22 @@ Reach reachOf(const StoreInfo& info, const Box& bounds, int axis) {
   return {std::round((bounds.min[axis] - offset) / scale), std::round((bounds.max[axis] - offset) / scale)};
 }
 
-/// True when the source's grid is the store's, shifted by whole steps, and holds all points.
+/// True when the source's grid is the store's, shifted by whole steps, and holds all points. The store of a single
+/// source may have finer steps than it (docs/decisions/0001-integer-grid.md): all points lie on the coarser grid then.
 bool takeSourceGrid(const StoreInfo& info, const Box& bounds, LasTarget& target) {
   if (!info.las) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    if (info.las->scale[axis] != info.grid.scale[axis]) return false;
-    const double steps = (info.grid.offset[axis] - info.las->offset[axis]) / info.las->scale[axis];
+    const double ratio = info.las->scale[axis] / info.grid.scale[axis];
+    const double divide = std::round(ratio);
+    if (!(std::abs(ratio - divide) <= kSameGrid * 1e-3) || divide < 1.0 || (divide > 1.0 && info.sources.size() != 1))
+      return false;
+    const double steps = (info.grid.offset[axis] - info.las->offset[axis]) / info.grid.scale[axis];
     const double shift = std::round(steps);
     if (!(std::abs(steps - shift) <= kSameGrid) || std::abs(shift) > 0x1p53) return false;
     const Reach reach = reachOf(info, bounds, axis);
-    if (reach.first + shift < kSmallestInteger || reach.last + shift > kLargestInteger) return false;
+    if ((reach.first + shift) / divide < kSmallestInteger || (reach.last + shift) / divide > kLargestInteger) return false;
     target.shift[axis] = static_cast<std::int64_t>(shift);
+    target.divide[axis] = static_cast<std::int64_t>(divide);
   }
   target.meta.scale = info.las->scale;
   target.meta.offset = info.las->offset;
@@ -140,6 +145,7 @@ void takeStoreGrid(const std::string& file, const StoreInfo& info, const Box& bo
                             ", found " + std::to_string(reach.last - reach.first) + " steps of " +
                             std::to_string(info.grid.scale[axis]) + " (expected less than 2^32)");
     target.shift[axis] = static_cast<std::int64_t>(shift);
+    target.divide[axis] = 1;
     target.meta.offset[axis] = info.grid.offset[axis] - shift * info.grid.scale[axis];
   }
 }

@@ -22,7 +22,8 @@ struct LasTarget {
   bool sameRecords = false;  ///< packed records are the store's as they are
   int rankAt = -1;           ///< in the store's record: degrees to be turned into a scan angle at angleAt
   std::size_t angleAt = 0;
-  glm::i64vec3 shift{0};  ///< integer of the file = integer of the store + shift
+  glm::i64vec3 shift{0};   ///< integer of the file = (integer of the store + shift) / divide
+  glm::i64vec3 divide{1};  ///< above 1 where the store's steps are fractions of the source's
 };
 
 /// The source's own format, records and grid where the points fit them; else the smallest of formats 6, 7, 8.

@@ -109,7 +109,7 @@ class LasWriter final : public ScanWriter {
   }
 
   std::int32_t toInteger(std::int64_t stored, int axis) const {
-    const std::int64_t integer = stored + target_.shift[axis];
+    const std::int64_t integer = (stored + target_.shift[axis]) / target_.divide[axis];
     if (integer < std::numeric_limits<std::int32_t>::min() || integer > std::numeric_limits<std::int32_t>::max())
       throw Error(path_, "a point lies outside of the stated bounds, found coordinate " + std::to_string(integer) +
                              " (expected 32 bits)");
