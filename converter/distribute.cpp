@@ -162,6 +162,7 @@ class Packer {
     }
     std::memset(to, 0, format_.attributeBytes);
     for (const SourceMapping::Column& c : mapping.columns) std::memcpy(to + c.to, from + c.from, c.bytes);
+    if (mapping.colourShiftAt >= 0) to[mapping.colourShiftAt] = static_cast<std::byte>(mapping.colourShift);
   }
 
   const Survey& frame_;

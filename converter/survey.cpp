@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/gtx/component_wise.hpp>
 #include <map>
 #include <mutex>
@@ -131,7 +132,47 @@ void placeCube(const Box& bounds, const AxisGrid (&axes)[3], Survey& out) {
   out.cubeBits = static_cast<int>(std::bit_width(steps - 1));
 }
 
+/// Sources that write colours in different ways need the way kept with every point.
+void mapColours(const std::vector<std::unique_ptr<PointSource>>& sources, Survey& out) {
+  std::vector<std::uint8_t> shifts;
+  bool differ = false;
+  for (const auto& source : sources) {
+    const std::optional<std::uint8_t> shift = sampleColourShift(*source);
+    const std::uint8_t before = shifts.empty() ? shift.value_or(8) : shifts.back();
+    shifts.push_back(shift.value_or(before));
+    differ = differ || shifts.back() != shifts.front();
+  }
+  if (!differ) return;
+  std::vector<Attribute> attributes = out.layout.attributes();
+  attributes.push_back({std::string(attribute::kColourShift), ScalarType::u8, 1, "", 1.0, 0.0});
+  out.layout = PointLayout(std::move(attributes));
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    SourceMapping& mapping = out.mappings[i];
+    mapping.colourShift = shifts[i];
+    mapping.colourShiftAt = static_cast<int>(out.layout.offset(out.layout.attributes().size() - 1));
+    mapping.sameLayout = false;
+  }
+}
+
 }  // namespace
+
+std::optional<std::uint8_t> sampleColourShift(const PointSource& source) {
+  constexpr std::size_t kSample = 20000;
+  const PointLayout& layout = source.info().layout;
+  const int rgb = layout.find(attribute::kRgb);
+  if (rgb < 0 || source.partCount() == 0) return std::nullopt;
+  PointBlock block;
+  if (!source.openPart(0)->read(block, kSample)) return std::nullopt;
+  std::uint16_t largest = 0;
+  for (std::size_t i = 0; i < block.count(); ++i) {
+    std::uint16_t value[3];
+    std::memcpy(value, block.attributes.data() + i * layout.stride() + layout.offset(static_cast<std::size_t>(rgb)),
+                sizeof value);
+    largest = std::max({largest, value[0], value[1], value[2]});
+  }
+  if (largest == 0) return std::nullopt;
+  return largest > 255 ? 8 : 0;
+}
 
 void ConvertControl::checkStop() const {
   if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Error("stopped before the store was complete");
@@ -208,6 +249,7 @@ Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
     mapping.originDelta = source->info().origin - out.grid.offset;
     out.mappings.push_back(std::move(mapping));
   }
+  if (sources.size() > 1 && out.layout.find(attribute::kRgb) >= 0) mapColours(sources, out);
   return out;
 }
 

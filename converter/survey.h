@@ -17,6 +17,8 @@ struct SourceMapping {
   std::vector<Column> columns;
   bool sameLayout = false;         ///< records can be copied whole
   glm::dvec3 originDelta{0.0};     ///< source origin - store grid offset
+  int colourShiftAt = -1;          ///< offset in the store's record of attribute::kColourShift, or -1
+  std::uint8_t colourShift = 0;    ///< of this source
 };
 
 /// The frame of the conversion, known before points are read (design section 5, stage 1).
@@ -38,6 +40,10 @@ struct MeasuredSource {
 
 /// Reads the points of a source once for their extent; in parallel over its parts.
 MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control);
+
+/// 0 where the first points of a source keep colours of 0 to 255 in their 16-bit fields, 8 where they use all 16
+/// bits, nothing where all are black or there are none.
+std::optional<std::uint8_t> sampleColourShift(const PointSource& source);
 
 /// Decides grid, cube and layout. `measured` has an entry for each source, used where present (else the header's
 /// bounds are believed). Throws Error for what cannot be converted.

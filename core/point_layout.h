@@ -24,6 +24,8 @@ struct Attribute {
   double offset = 0.0;
 
   std::size_t bytes() const { return scalarBytes(type) * components; }
+  /// Made by Strata for drawing; no part of the scan.
+  bool isInternal() const { return name.starts_with("strata:"); }
 };
 
 /// Names and types every part of Strata knows. All values are kept as the source has them.
@@ -43,6 +45,8 @@ inline constexpr std::string_view kPointSourceId = "point_source_id";     // u16
 inline constexpr std::string_view kGpsTime = "gps_time";                  // f64
 inline constexpr std::string_view kWavePacket = "wave_packet";            // u8 x 29, the record's waveform fields
 inline constexpr std::string_view kNormal = "normal";                     // f32 x 3
+inline constexpr std::string_view kColourShift = "strata:colour_shift";   // u8; only in stores of sources that differ
+// in it: the point's own StoreInfo::colourShift. Ours, not the sources': exports leave it out
 }  // namespace attribute
 
 /// The attributes of a cloud and where each stands in a packed record (no padding, no position).

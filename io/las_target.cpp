@@ -32,6 +32,7 @@ std::optional<std::vector<LasTarget::Copy>> copiesBetween(const PointLayout& fro
   std::vector<LasTarget::Copy> copies;
   for (std::size_t i = 0; i < from.attributes().size(); ++i) {
     const Attribute& attribute = from.attributes()[i];
+    if (attribute.isInternal()) continue;
     const int place = to.find(attribute.name);
     if (place < 0 || !sameType(attribute, to.attributes()[static_cast<std::size_t>(place)])) return {};
     copies.push_back({from.offset(i), to.offset(static_cast<std::size_t>(place)), attribute.bytes()});
@@ -72,6 +73,7 @@ LasTarget modernTarget(const StoreInfo& info) {
   std::vector<Attribute> extra;
   for (std::size_t i = 0; i < info.layout.attributes().size(); ++i) {
     const Attribute& attribute = info.layout.attributes()[i];
+    if (attribute.isInternal()) continue;
     const int place = fields.find(attribute.name);
     if (place >= 0 && sameType(attribute, fields.attributes()[static_cast<std::size_t>(place)])) {
       target.copies.push_back(

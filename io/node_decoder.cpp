@@ -171,10 +171,15 @@ void decodeColour(PayloadReader& payload, const StoreInfo& info, std::size_t off
   const auto value = [&](std::size_t i, std::size_t channel) {
     return points.attributes.data() + i * stride + offset + 2 * channel;
   };
+  const int ownShift = info.layout.find(attribute::kColourShift);
+  const auto shift = [&](std::size_t i) {
+    if (ownShift < 0) return info.colourShift;
+    return static_cast<int>(points.attributes[i * stride + info.layout.offset(static_cast<std::size_t>(ownShift))]) & 15;
+  };
   std::span<const std::byte> raw = payload.plane(kColour, count * 3, 3);
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t i = 0; i < count; ++i) {
-      const auto shown = static_cast<std::uint16_t>(static_cast<unsigned>(raw[channel * count + i]) << info.colourShift);
+      const auto shown = static_cast<std::uint16_t>(static_cast<unsigned>(raw[channel * count + i]) << shift(i));
       std::memcpy(value(i, channel), &shown, sizeof shown);
     }
   raw = payload.plane(kColourResidual, count * 6, 6);
@@ -265,14 +270,14 @@ NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<
   const PointLayout& layout = info.layout;
   for (std::size_t a = 0; a < layout.attributes().size(); ++a) {
     const Attribute& column = layout.attributes()[a];
-    if (column.name == attribute::kRgb) {
-      decodeColour(payload, info, layout.offset(a), points);
-    } else {
-      const auto raw = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + a), count * column.bytes(),
-                                     column.bytes());
-      scatterColumns(raw, layout.stride(), layout.offset(a), column.bytes(), points);
-    }
+    if (column.name == attribute::kRgb) continue;
+    const auto raw =
+        payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + a), count * column.bytes(), column.bytes());
+    scatterColumns(raw, layout.stride(), layout.offset(a), column.bytes(), points);
   }
+  // Last, since a point's colour shift may be an attribute.
+  if (const int rgb = layout.find(attribute::kRgb); rgb >= 0)
+    decodeColour(payload, info, layout.offset(static_cast<std::size_t>(rgb)), points);
   return points;
 }
 

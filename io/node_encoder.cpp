@@ -121,12 +121,17 @@ struct ColourPlanes {
   std::vector<std::byte> colour, residual;
 };
 
-ColourPlanes splitColour(const NodePoints& points, std::size_t stride, std::size_t offset, int shift) {
+ColourPlanes splitColour(const NodePoints& points, const StoreInfo& info, std::size_t offset) {
   const std::size_t count = points.count();
+  const std::size_t stride = info.layout.stride();
+  const int ownShift = info.layout.find(attribute::kColourShift);
   ColourPlanes planes{std::vector<std::byte>(count * 3), std::vector<std::byte>(count * 6)};
   for (std::size_t i = 0; i < count; ++i) {
     std::uint16_t rgb[3];
     std::memcpy(rgb, points.attributes.data() + i * stride + offset, sizeof rgb);
+    const int shift = ownShift < 0 ? info.colourShift
+                                   : static_cast<int>(points.attributes[i * stride + info.layout.offset(
+                                                                                         static_cast<std::size_t>(ownShift))]);
     for (std::size_t c = 0; c < 3; ++c) {
       const unsigned shown = std::min(static_cast<unsigned>(rgb[c]) >> shift, 255u);
       const unsigned rest = rgb[c] - (shown << shift);
@@ -156,8 +161,7 @@ EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info) {
   writer.addPlane(kPosition10, packPositions(points, batches, 0), 0);
   std::vector<std::byte> residual;
   if (rgb >= 0) {
-    ColourPlanes colour =
-        splitColour(points, layout.stride(), layout.offset(static_cast<std::size_t>(rgb)), info.colourShift);
+    ColourPlanes colour = splitColour(points, info, layout.offset(static_cast<std::size_t>(rgb)));
     writer.addPlane(kColour, colour.colour, 3);
     residual = std::move(colour.residual);
   }

@@ -62,7 +62,7 @@ class PlyWriter final : public ScanWriter {
     file_.append(std::as_bytes(std::span(header)));
     recordBytes_ = 3 * sizeof(double) + (rgb_ >= 0 ? 3 : 0);
     for (std::size_t i = 0; i < info_.layout.attributes().size(); ++i)
-      if (static_cast<int>(i) != rgb_) recordBytes_ += info_.layout.attributes()[i].bytes();
+      if (isPlain(i)) recordBytes_ += info_.layout.attributes()[i].bytes();
   }
   ~PlyWriter() override {
     std::error_code ignored;
@@ -108,7 +108,7 @@ class PlyWriter final : public ScanWriter {
     if (rgb_ >= 0)
       for (const char* channel : {"red", "green", "blue"}) property("uchar", channel);
     for (std::size_t i = 0; i < info_.layout.attributes().size(); ++i) {
-      if (static_cast<int>(i) == rgb_) continue;
+      if (!isPlain(i)) continue;
       const Attribute& a = info_.layout.attributes()[i];
       const std::string name = a.name.starts_with("extra:") ? a.name.substr(6) : a.name;
       if (a.name == attribute::kNormal)
@@ -134,15 +134,25 @@ class PlyWriter final : public ScanWriter {
       for (std::size_t k = 0; k < 3; ++k) {
         std::uint16_t channel = 0;
         std::memcpy(&channel, from + 2 * k, sizeof channel);
-        *out++ = static_cast<std::byte>(channel >> info_.colourShift & 255);
+        *out++ = static_cast<std::byte>(channel >> colourShift(record) & 255);
       }
     }
     for (std::size_t i = 0; i < info_.layout.attributes().size(); ++i) {
-      if (static_cast<int>(i) == rgb_) continue;
+      if (!isPlain(i)) continue;
       const Attribute& a = info_.layout.attributes()[i];
       copyValues(a, record + info_.layout.offset(i), out);
       out += a.bytes();
     }
+  }
+
+  /// Colours are written apart, and what Strata made for itself is not written.
+  bool isPlain(std::size_t i) const {
+    return static_cast<int>(i) != rgb_ && !info_.layout.attributes()[i].isInternal();
+  }
+
+  int colourShift(const std::byte* record) const {
+    const int own = info_.layout.find(attribute::kColourShift);
+    return own < 0 ? info_.colourShift : static_cast<int>(record[info_.layout.offset(static_cast<std::size_t>(own))]);
   }
 
   static void copyValues(const Attribute& a, const std::byte* from, std::byte* to) {

@@ -150,5 +150,24 @@ TEST(Converter, TwoClustersFarApartKeepTheirCoordinates) {
   EXPECT_EQ(sortedPoints(store), sortedSourcePoints((folder / "far.xyz").string(), store.info()));
 }
 
+TEST(Converter, FilesThatWriteColoursInDifferentWaysAreAllDrawnRight) {
+  const test::TempFolder folder;
+  for (const int scale : {1, 256}) {
+    std::ofstream ply(folder / ("colours" + std::to_string(scale) + ".ply"));
+    ply << "ply\nformat ascii 1.0\nelement vertex 100\nproperty float x\nproperty float y\nproperty float z\n";
+    const char* type = scale == 1 ? "uchar" : "ushort";
+    for (const char* channel : {"red", "green", "blue"}) ply << "property " << type << " " << channel << "\n";
+    ply << "end_header\n";
+    for (int i = 0; i < 100; ++i) ply << i << " 0 0 " << 200 * scale << " " << 100 * scale << " " << 50 * scale << "\n";
+  }
+  convertTo(folder / "a.strata", {(folder / "colours1.ply").string(), (folder / "colours256.ply").string()});
+  const Store store((folder / "a.strata").string());
+  NodeData drawn;
+  readForDrawing(store, 0, Precision::full30, drawn);
+  ASSERT_EQ(drawn.pointCount(), 200u);
+  for (const std::uint32_t colour : drawn.colour) EXPECT_EQ(colour, 200u | 100u << 8 | 50u << 16 | 255u << 24);
+  EXPECT_TRUE(verifyStore(store).problems.empty());
+}
+
 }  // namespace
 }  // namespace strata
