@@ -15,9 +15,12 @@ struct DrawOptions {
   glm::vec2 intensityRange{0.0f, 65535.0f};   ///< black to white
   glm::dvec2 elevationRange{0.0, 1.0};        ///< world z at the ends of the colour map
   glm::u8vec3 background{24, 26, 30};
-  int pointSize = 1;                          ///< side of the square of pixels a point covers, 1 to 16
+  int pointSize = 1;                          ///< least side of the square of pixels a point covers, 1 to kLargestPoint
+  float pointMetres = 0.0f;                   ///< side of that square in metres, where it is more pixels than pointSize
   bool edl = false;                           ///< eye-dome lighting over the finished picture
   float edlStrength = 1.0f;
+
+  static constexpr int kLargestPoint = 32;    ///< pixels
 };
 
 /// A finished picture. Row 0 is the top.

@@ -44,7 +44,7 @@ class Compute32Rasterizer final : public Rasterizer {
       drawBand(row, std::min(row + rowsAtOnce, buffer_.height));
     scene_.gl().UseProgram(0);
     stats.drawMs = watch.lapMs();
-    resolveFrame(list, options, buffer_, pool_, frame);
+    resolveFrame(list, view, options, buffer_, pool_, frame);
     stats.resolveMs = watch.lapMs();
     return stats;
   }

@@ -49,7 +49,7 @@ class CpuRasterizer final : public Rasterizer {
     });
     DrawStats stats = planStats(plan_);
     stats.drawMs = watch.lapMs();
-    resolveFrame(list, options, buffer_, pool_, frame);
+    resolveFrame(list, view, options, buffer_, pool_, frame);
     stats.resolveMs = watch.lapMs();
     return stats;
   }

@@ -108,7 +108,7 @@ class PointsRasterizer final : public Rasterizer {
                           kEmptyPixel);
     if (!buffer_.pixels.empty()) drawPoints();
     stats.drawMs = watch.lapMs();
-    resolveFrame(list, options, buffer_, pool_, frame);
+    resolveFrame(list, view, options, buffer_, pool_, frame);
     stats.resolveMs = watch.lapMs();
     return stats;
   }

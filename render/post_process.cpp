@@ -1,6 +1,7 @@
 #include "render/post_process.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -9,16 +10,6 @@ namespace {
 
 constexpr std::size_t kRowsAtOnce = 16;
 constexpr float kEdlGain = 40.0f;  ///< a depth step of 1 % to all neighbours darkens to about 0.6 at strength 1
-
-/// to[i] = min of from[i - before] to from[i + after], cut at the ends.
-void slidingMin(const PackedPixel* from, PackedPixel* to, int count, int before, int after) {
-  for (int i = 0; i < count; ++i) {
-    PackedPixel nearest = kEmptyPixel;
-    const int last = std::min(i + after, count - 1);
-    for (int j = std::max(i - before, 0); j <= last; ++j) nearest = std::min(nearest, from[j]);
-    to[i] = nearest;
-  }
-}
 
 std::uint32_t scaleColour(std::uint32_t colour, float factor) {
   std::uint32_t result = colour & 0xff000000u;
@@ -31,32 +22,64 @@ std::uint32_t scaleColour(std::uint32_t colour, float factor) {
 
 }  // namespace
 
-void dilate(VisibilityBuffer& buffer, int pointSize, const ThreadPool& pool) {
-  if (pointSize <= 1) return;
-  const int before = pointSize / 2;
-  const int after = (pointSize - 1) / 2;
+PointSizes::PointSizes(int pixels) : least_(std::clamp(pixels, 1, DrawOptions::kLargestPoint)) {}
+
+PointSizes::PointSizes(const DrawOptions& options, const View& view)
+    : least_(std::clamp(options.pointSize, 1, DrawOptions::kLargestPoint)), perspective_(!view.orthographic) {
+  if (options.pointMetres <= 0.0f) return;
+  View unit = view;
+  unit.nearPlane = 0.0;
+  pixelsAtUnitDepth_ = static_cast<float>(pixelsAt(unit, static_cast<double>(options.pointMetres), 1.0));
+}
+
+void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool) {
+  if (sizes.alwaysOne()) return;
   const auto width = static_cast<std::size_t>(buffer.width);
   const auto height = static_cast<std::size_t>(buffer.height);
-  std::vector<PackedPixel> rows(buffer.pixels.size());
+  std::vector<PackedPixel> rows(buffer.pixels.size(), kEmptyPixel);
+  std::vector<std::uint8_t> sizeOf(rows.size(), 1);   // of the point in `rows`
+  std::atomic<int> largest{1};
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      slidingMin(&buffer.pixels[y * width], &rows[y * width], buffer.width, before, after);
+    int largestHere = 1;
+    for (std::size_t y = begin; y < end; ++y) {
+      const PackedPixel* from = &buffer.pixels[y * width];
+      PackedPixel* to = &rows[y * width];
+      for (std::size_t x = 0; x < width; ++x) {
+        if (from[x] == kEmptyPixel) continue;
+        const auto size = static_cast<std::size_t>(sizes.at(pixelDepth(from[x])));
+        const std::size_t last = std::min(x + size / 2, width - 1);
+        for (std::size_t i = x - std::min(x, (size - 1) / 2); i <= last; ++i) to[i] = std::min(to[i], from[x]);
+      }
+      for (std::size_t x = 0; x < width; ++x)
+        if (to[x] != kEmptyPixel) {
+          const int size = sizes.at(pixelDepth(to[x]));
+          sizeOf[y * width + x] = static_cast<std::uint8_t>(size);
+          largestHere = std::max(largestHere, size);
+        }
+    }
+    int seen = largest;
+    while (largestHere > seen && !largest.compare_exchange_weak(seen, largestHere)) {
+    }
   });
+  const auto reach = static_cast<std::size_t>(largest.load());
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
       PackedPixel* to = &buffer.pixels[y * width];
-      const std::size_t first = y - std::min(y, static_cast<std::size_t>(before));
-      const std::size_t last = std::min(y + static_cast<std::size_t>(after), height - 1);
-      std::copy_n(&rows[first * width], width, to);
-      for (std::size_t row = first + 1; row <= last; ++row) {
+      std::fill_n(to, width, kEmptyPixel);
+      const std::size_t last = std::min(y + (reach - 1) / 2, height - 1);
+      for (std::size_t row = y - std::min(y, reach / 2); row <= last; ++row) {
         const PackedPixel* from = &rows[row * width];
-        for (std::size_t x = 0; x < width; ++x) to[x] = std::min(to[x], from[x]);
+        const std::uint8_t* size = &sizeOf[row * width];
+        // Reaches down by size / 2 and up by (size - 1) / 2.
+        const std::size_t least = row <= y ? 2 * (y - row) : 2 * (row - y) + 1;
+        for (std::size_t x = 0; x < width; ++x)
+          to[x] = size[x] >= least ? std::min(to[x], from[x]) : to[x];
       }
     }
   });
 }
 
-void eyeDomeLighting(Frame& frame, float strength, const ThreadPool& pool) {
+void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, const ThreadPool& pool) {
   const auto width = static_cast<std::size_t>(frame.width);
   const auto height = static_cast<std::size_t>(frame.height);
   std::vector<float> logDepth(frame.depth.size());
@@ -70,13 +93,15 @@ void eyeDomeLighting(Frame& frame, float strength, const ThreadPool& pool) {
       for (std::size_t x = 0; x < width; ++x) {
         const std::size_t at = y * width + x;
         if (frame.pointId[at] == Frame::kNoPoint) continue;
+        const auto apart = static_cast<std::size_t>(sizes.at(frame.depth[at]));
+        const std::size_t rows[3] = {y - std::min(y, apart), y, std::min(y + apart, height - 1)};
+        const std::size_t columns[3] = {x - std::min(x, apart), x, std::min(x + apart, width - 1)};
         float inFront = 0.0f;
-        const std::size_t top = y == 0 ? 0 : y - 1, bottom = std::min(y + 1, height - 1);
-        const std::size_t left = x == 0 ? 0 : x - 1, right = std::min(x + 1, width - 1);
-        for (std::size_t row = top; row <= bottom; ++row)
-          for (std::size_t column = left; column <= right; ++column)
+        for (const std::size_t row : rows)
+          for (const std::size_t column : columns)
             inFront += std::max(0.0f, logDepth[at] - logDepth[row * width + column]);
-        frame.colour[at] = scaleColour(frame.colour[at], std::exp(-inFront / 8.0f * kEdlGain * strength));
+        const float gain = kEdlGain / 8.0f * strength / static_cast<float>(apart);
+        if (inFront > 0.0f) frame.colour[at] = scaleColour(frame.colour[at], std::exp(-inFront * gain));
       }
   });
 }

@@ -1,19 +1,44 @@
 #pragma once
+#include <algorithm>
 #include <glm/gtc/type_precision.hpp>
 #include <vector>
 
 #include "core/frame.h"
+#include "core/view.h"
 #include "render/thread_pool.h"
 #include "render/visibility.h"
 
 namespace strata {
 
-/// Lets every point cover a square of `pointSize` pixels: a pixel takes the nearest of the points that cover it.
-/// A point at column p covers columns p - (pointSize - 1) / 2 to p + pointSize / 2; rows likewise.
-void dilate(VisibilityBuffer& buffer, int pointSize, const ThreadPool& pool);
+/// How many pixels wide a point at some depth is drawn.
+class PointSizes {
+ public:
+  /// All alike.
+  explicit PointSizes(int pixels);
+  PointSizes(const DrawOptions& options, const View& view);
+
+  int at(float depth) const {
+    const float pixels = pixelsAtUnitDepth_ / (perspective_ ? depth : 1.0f);
+    return pixels > static_cast<float>(least_)
+               ? static_cast<int>(std::min(pixels + 0.5f, static_cast<float>(DrawOptions::kLargestPoint)))
+               : least_;
+  }
+  bool alwaysOne() const { return least_ <= 1 && pixelsAtUnitDepth_ <= 0.0f; }
+
+ private:
+  int least_ = 1;
+  float pixelsAtUnitDepth_ = 0.0f;
+  bool perspective_ = true;
+};
+
+/// Lets every point cover a square of pixels: a pixel takes the nearest of the points that cover it.
+/// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be done
+/// one after the other, since a nearer point is never the smaller one.
+void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool);
 
 /// Eye-dome lighting (Boucheny 2009): darkens a pixel by how far its eight neighbours stand in front of it,
 /// in log2 of the depth, so that the effect does not depend on the scene's scale. The background stays.
-void eyeDomeLighting(Frame& frame, float strength, const ThreadPool& pool);
+/// Neighbours are as far away as points are wide, so that single points of a slope do not get outlines.
+void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, const ThreadPool& pool);
 
 }  // namespace strata

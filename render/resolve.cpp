@@ -1,6 +1,7 @@
 #include "render/resolve.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/colour_map.h"
 #include "render/post_process.h"
@@ -69,7 +70,8 @@ std::uint32_t pointColour(const NodeData& node, std::uint32_t point, const DrawO
       if (node.intensity.empty()) return missingColour();
       const float span = std::max(options.intensityRange.y - options.intensityRange.x, 1e-6f);
       const float t = (static_cast<float>(node.intensity[point]) - options.intensityRange.x) / span;
-      const int grey = static_cast<int>(std::clamp(t, 0.0f, 1.0f) * 255.0f + 0.5f);
+      // The square root: what scanners record spans decades, and most of a scan is in the dark tenth of the range.
+      const int grey = static_cast<int>(std::sqrt(std::clamp(t, 0.0f, 1.0f)) * 255.0f + 0.5f);
       return packColour(grey, grey, grey);
     }
     case ColourMode::elevation: {
@@ -86,9 +88,10 @@ std::uint32_t pointColour(const NodeData& node, std::uint32_t point, const DrawO
 
 }  // namespace
 
-void resolveFrame(const RenderList& list, const DrawOptions& options, VisibilityBuffer& buffer, const ThreadPool& pool,
-                  Frame& frame) {
-  dilate(buffer, std::clamp(options.pointSize, 1, 16), pool);
+void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
+                  const ThreadPool& pool, Frame& frame) {
+  const PointSizes sizes(options, view);
+  dilate(buffer, sizes, pool);
 
   const PointLookup lookup(list);
   const std::uint32_t background = packColour(options.background.x, options.background.y, options.background.z);
@@ -115,7 +118,7 @@ void resolveFrame(const RenderList& list, const DrawOptions& options, Visibility
   pool.parallelFor(count, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; i += kPixelsAhead) resolvePixels(i, std::min(i + kPixelsAhead, end));
   });
-  if (options.edl) eyeDomeLighting(frame, options.edlStrength, pool);
+  if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, pool);
 }
 
 }  // namespace strata

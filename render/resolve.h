@@ -8,7 +8,7 @@ namespace strata {
 
 /// The second half of every draw: point size, ids to colours, eye-dome lighting. `buffer` is used up; its ids must be
 /// those of `list`.
-void resolveFrame(const RenderList& list, const DrawOptions& options, VisibilityBuffer& buffer, const ThreadPool& pool,
-                  Frame& frame);
+void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
+                  const ThreadPool& pool, Frame& frame);
 
 }  // namespace strata

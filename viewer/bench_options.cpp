@@ -10,7 +10,6 @@
 namespace strata {
 namespace {
 
-constexpr int kLargestPoint = 16;  // DrawOptions::pointSize
 constexpr int kMostLoaders = 64;
 
 /// What CLI11 fills in before names become values.
@@ -34,7 +33,7 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
   app.add_option("--point-size", o.pointSize, "side of a point, pixels")
-      ->check(CLI::Range(1, kLargestPoint))
+      ->check(CLI::Range(1, DrawOptions::kLargestPoint))
       ->capture_default_str();
   app.add_flag("--edl", o.edl, "eye-dome lighting");
   app.add_option("--colour", raw.colour, "auto, rgb, intensity, elevation, classification or level")

@@ -142,16 +142,17 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
 /// A still of full detail. Where the scan is too sparse for a place so near, the camera steps back, at most to
 /// `farthest` metres.
 Image takeStill(Still still, double farthest, DrawOptions draw, Streamer& streamer, Rasterizer& rasterizer) {
-  double spacing = 0.0;
+  FrontSpacing spacing;
   for (int step = 0; step < kStepsBack; ++step) {
     draw.pointSize = 1;
     draw.edl = false;
-    spacing = frontSpacing(drawComplete(still.view, draw, streamer, rasterizer));
-    const double factor = std::min(spacing / kWantedSpacingPx, farthest / still.subject);
-    if (spacing <= kWidestSpacingPx || factor <= 1.05) break;
+    spacing = frontSpacing(drawComplete(still.view, draw, streamer, rasterizer), still.view);
+    const double factor = std::min(spacing.pixels / kWantedSpacingPx, farthest / still.subject);
+    if (spacing.pixels <= kWidestSpacingPx || factor <= 1.05) break;
     still = fartherStill(still, factor);
   }
-  draw.pointSize = closedPointSize(spacing);
+  draw.pointSize = closedPointSize(spacing.pixels);
+  draw.pointMetres = closedPointMetres(spacing.metres);
   draw.edl = true;
   return imageOf(drawComplete(still.view, draw, streamer, rasterizer));
 }

@@ -24,8 +24,8 @@ constexpr int kBlock = 24;                // pixels; in blocks of this the point
 constexpr std::size_t kLeastInBlock = 6;  // points; fewer are an edge or the haze around one
 constexpr float kLayerDepth = 1.06f;      // what lies this much deeper is seen through the gaps of the front
 constexpr double kClosedShare = 65.0;     // per cent of the picture's blocks that should look closed
-constexpr double kOverlap = 1.4;          // points do not stand on a grid
-constexpr int kLargestPoint = 12;
+constexpr double kOverlap = 2.0;          // points do not stand on a grid
+constexpr int kLargestPoint = 2;  // pixels, for what is far away; near points have their size in metres
 constexpr double kBlockedCost = 3.0;  // against coverage, when views are compared
 constexpr double kLayeringGain = 0.3;
 
@@ -216,8 +216,11 @@ std::vector<Still> chooseStills(const Scene& scene, const Store& store, int widt
   return stills;
 }
 
-double frontSpacing(const Frame& frame) {
-  std::vector<double> spacings;
+FrontSpacing frontSpacing(const Frame& frame, const View& view) {
+  struct Block {
+    double depth, pixels;
+  };
+  std::vector<Block> blocks;
   std::vector<float> depths;
   for (int y = 0; y + kBlock <= frame.height; y += kBlock)
     for (int x = 0; x + kBlock <= frame.width; x += kBlock) {
@@ -233,14 +236,23 @@ double frontSpacing(const Frame& frame) {
       std::nth_element(depths.begin(), tenth, depths.end());
       const float behind = *tenth * kLayerDepth;
       const auto front = std::count_if(depths.begin(), depths.end(), [&](float depth) { return depth < behind; });
-      spacings.push_back(kBlock / std::sqrt(static_cast<double>(front)));
+      blocks.push_back({static_cast<double>(*tenth), kBlock / std::sqrt(static_cast<double>(front))});
     }
-  return percentile(spacings, kClosedShare);
+  std::sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) { return a.depth < b.depth; });
+  std::vector<double> pixels, metres;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    pixels.push_back(blocks[i].pixels);
+    // Far away the level of detail decides the spacing; near the eye it is the scan's own.
+    if (2 * i <= blocks.size()) metres.push_back(blocks[i].pixels / pixelsAt(view, 1.0, blocks[i].depth));
+  }
+  return {percentile(pixels, kClosedShare), percentile(metres, kClosedShare)};
 }
 
 int closedPointSize(double spacingPx) {
   return std::clamp(static_cast<int>(std::ceil(kOverlap * spacingPx)), 1, kLargestPoint);
 }
+
+float closedPointMetres(double spacing) { return static_cast<float>(kOverlap * spacing); }
 
 Still fartherStill(const Still& still, double factor) {
   Still next = still;

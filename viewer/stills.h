@@ -41,11 +41,17 @@ Still detailStill(const Scene& scene, const Store& store, const Still& close, in
 
 std::vector<Still> chooseStills(const Scene& scene, const Store& store, int width, int height);
 
-/// Distance in pixels between neighbouring points of the nearest surface, in all but the sparsest third of a picture
-/// drawn with points of one pixel.
-double frontSpacing(const Frame& frame);
+/// Distance between neighbouring points of the nearest surface.
+struct FrontSpacing {
+  double pixels = 0.0;   ///< in all but the sparsest third of the picture
+  double metres = 0.0;   ///< in the nearer half of the picture, all but the sparsest third of it
+};
+/// `frame` is drawn from `view` with points of one pixel.
+FrontSpacing frontSpacing(const Frame& frame, const View& view);
 /// Side of the squares that close the gaps.
 int closedPointSize(double spacingPx);
+/// The same in metres.
+float closedPointMetres(double spacing);
 /// The same from `factor` times as far away.
 Still fartherStill(const Still& still, double factor);
 

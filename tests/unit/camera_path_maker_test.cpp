@@ -118,16 +118,19 @@ TEST(Stills, PointsGetAsLargeAsTheirDistanceOnTheScreen) {
       frame.pointId[y * 240 + x] = 1;
       frame.depth[y * 240 + x] = 10.0f;
     }
-  EXPECT_NEAR(frontSpacing(frame), 4.0, 1e-9);
+  View view;
+  view.width = view.height = 240;
+  EXPECT_NEAR(frontSpacing(frame, view).pixels, 4.0, 1e-9);
   // What shines through from behind does not count.
   for (std::size_t i = 0; i < frame.pointId.size(); i += 7)
     if (frame.pointId[i] == Frame::kNoPoint) {
       frame.pointId[i] = 2;
       frame.depth[i] = 20.0f;
     }
-  EXPECT_NEAR(frontSpacing(frame), 4.0, 1e-9);
+  EXPECT_NEAR(frontSpacing(frame, view).pixels, 4.0, 1e-9);
+  EXPECT_NEAR(frontSpacing(frame, view).metres, 4.0 / pixelsAt(view, 1.0, 10.0), 1e-9);
   EXPECT_EQ(closedPointSize(0.0), 1);
-  EXPECT_GE(closedPointSize(4.0), 4);
+  EXPECT_GT(closedPointMetres(0.5), 0.5f);
 }
 
 TEST(DensePlace, IsWhereTheSurfaceWasScannedDensely) {

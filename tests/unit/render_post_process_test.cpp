@@ -37,10 +37,40 @@ TEST(Dilate, GivesEachPixelTheNearestPointWhoseSquareCoversIt) {
               target = std::min(target, before.pixels[static_cast<std::size_t>(row * width + column)]);
             }
       VisibilityBuffer found = before;
-      dilate(found, size, pool);
+      dilate(found, PointSizes(size), pool);
       EXPECT_EQ(found.pixels, expected.pixels) << width << " x " << height << ", size " << size;
     }
   }
+}
+
+TEST(Dilate, GivesPointsOfGrowingSizeTheSameAsDrawingEachAlone) {
+  const ThreadPool pool(2);
+  View view;
+  view.width = 61;
+  view.height = 47;
+  DrawOptions options;
+  options.pointMetres = 0.2f;
+  const PointSizes sizes(options, view);
+  VisibilityBuffer before{view.width, view.height, std::vector<PackedPixel>(61 * 47, kEmptyPixel)};
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> depth(0.4f, 20.0f);
+  for (PackedPixel& pixel : before.pixels)
+    if (random() % 40 == 0) pixel = packPixel(std::bit_cast<std::uint32_t>(depth(random)), static_cast<std::uint32_t>(random() % 1000));
+  VisibilityBuffer expected{view.width, view.height, std::vector<PackedPixel>(before.pixels.size(), kEmptyPixel)};
+  for (int row = 0; row < view.height; ++row)
+    for (int column = 0; column < view.width; ++column) {
+      const PackedPixel point = before.pixels[static_cast<std::size_t>(row * view.width + column)];
+      if (point == kEmptyPixel) continue;
+      const int size = sizes.at(pixelDepth(point));
+      for (int y = std::max(row - (size - 1) / 2, 0); y <= std::min(row + size / 2, view.height - 1); ++y)
+        for (int x = std::max(column - (size - 1) / 2, 0); x <= std::min(column + size / 2, view.width - 1); ++x) {
+          PackedPixel& target = expected.pixels[static_cast<std::size_t>(y * view.width + x)];
+          target = std::min(target, point);
+        }
+    }
+  VisibilityBuffer found = before;
+  dilate(found, sizes, pool);
+  EXPECT_EQ(found.pixels, expected.pixels);
 }
 
 Frame flatFrame(int side, float depth) {
@@ -61,7 +91,7 @@ TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
     frame.pointId[i] = Frame::kNoPoint;
   }
   const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, pool);
+  eyeDomeLighting(frame, 1.0f, PointSizes(1), pool);
   EXPECT_EQ(frame.colour, before);
 }
 
@@ -71,7 +101,7 @@ TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
   for (std::size_t i = 0; i < frame.depth.size(); ++i)
     if (i % 9 >= 5) frame.depth[i] = 6.0f;
   const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, pool);
+  eyeDomeLighting(frame, 1.0f, PointSizes(1), pool);
   for (std::size_t i = 0; i < frame.colour.size(); ++i) {
     if (i % 9 == 5)
       EXPECT_LT(frame.colour[i] & 255u, before[i] & 255u);
@@ -86,8 +116,8 @@ TEST(EyeDomeLighting, DoesNotDependOnTheScaleOfTheScene) {
   Frame small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
   small.depth[12] *= 1.125f;
   large.depth[12] *= 1.125f;
-  eyeDomeLighting(small, 0.3f, pool);
-  eyeDomeLighting(large, 0.3f, pool);
+  eyeDomeLighting(small, 0.3f, PointSizes(1), pool);
+  eyeDomeLighting(large, 0.3f, PointSizes(1), pool);
   EXPECT_EQ(small.colour, large.colour);
 }
 

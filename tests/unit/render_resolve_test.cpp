@@ -38,7 +38,7 @@ TEST(Resolve, FindsThePointOfEveryId) {
   for (std::uint32_t id = 0; id < list.pointCount; ++id)
     buffer.pixels.push_back(packPixel(std::bit_cast<std::uint32_t>(1.0f), id));
   Frame frame;
-  resolveFrame(list, {}, buffer, ThreadPool(2), frame);
+  resolveFrame(list, View{}, {}, buffer, ThreadPool(2), frame);
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < list.items.size(); ++i)
     for (std::uint32_t p = 0; p < list.items[i].pointCount; ++p, ++at) ASSERT_EQ(frame.colour[at], i << 16 | p);
@@ -53,7 +53,7 @@ TEST(Resolve, ColoursByTheModeThatIsAskedFor) {
   const auto colours = [&](const DrawOptions& options) {
     VisibilityBuffer buffer{3, 1, {packPixel(0x3f800000u, 0), packPixel(0x3f800000u, 1), kEmptyPixel}};
     Frame frame;
-    resolveFrame(list, options, buffer, ThreadPool(1), frame);
+    resolveFrame(list, View{}, options, buffer, ThreadPool(1), frame);
     EXPECT_EQ(frame.pointId[2], Frame::kNoPoint);
     EXPECT_EQ(frame.depth[2], std::numeric_limits<float>::infinity());
     EXPECT_EQ(frame.colour[2], packColour(1, 2, 3));
