@@ -16,7 +16,7 @@ void minMax(const std::byte* first, std::size_t stride, std::size_t count, std::
     for (std::size_t c = 0; c < components; ++c) {
       T value;
       std::memcpy(&value, first + i * stride + c * sizeof(T), sizeof(T));
-      low = value < low ? value : low;      // a NaN compares false and is passed over
+      low = value < low ? value : low;  // a NaN compares false and is passed over
       high = value > high ? value : high;
     }
   if (!(low <= high)) return;
@@ -27,16 +27,26 @@ void minMax(const std::byte* first, std::size_t stride, std::size_t count, std::
 void minMaxOf(ScalarType type, const std::byte* first, std::size_t stride, std::size_t count, std::size_t components,
               AttributeRange& range) {
   switch (type) {
-    case ScalarType::u8: return minMax<std::uint8_t>(first, stride, count, components, range);
-    case ScalarType::i8: return minMax<std::int8_t>(first, stride, count, components, range);
-    case ScalarType::u16: return minMax<std::uint16_t>(first, stride, count, components, range);
-    case ScalarType::i16: return minMax<std::int16_t>(first, stride, count, components, range);
-    case ScalarType::u32: return minMax<std::uint32_t>(first, stride, count, components, range);
-    case ScalarType::i32: return minMax<std::int32_t>(first, stride, count, components, range);
-    case ScalarType::u64: return minMax<std::uint64_t>(first, stride, count, components, range);
-    case ScalarType::i64: return minMax<std::int64_t>(first, stride, count, components, range);
-    case ScalarType::f32: return minMax<float>(first, stride, count, components, range);
-    case ScalarType::f64: return minMax<double>(first, stride, count, components, range);
+    case ScalarType::u8:
+      return minMax<std::uint8_t>(first, stride, count, components, range);
+    case ScalarType::i8:
+      return minMax<std::int8_t>(first, stride, count, components, range);
+    case ScalarType::u16:
+      return minMax<std::uint16_t>(first, stride, count, components, range);
+    case ScalarType::i16:
+      return minMax<std::int16_t>(first, stride, count, components, range);
+    case ScalarType::u32:
+      return minMax<std::uint32_t>(first, stride, count, components, range);
+    case ScalarType::i32:
+      return minMax<std::int32_t>(first, stride, count, components, range);
+    case ScalarType::u64:
+      return minMax<std::uint64_t>(first, stride, count, components, range);
+    case ScalarType::i64:
+      return minMax<std::int64_t>(first, stride, count, components, range);
+    case ScalarType::f32:
+      return minMax<float>(first, stride, count, components, range);
+    case ScalarType::f64:
+      return minMax<double>(first, stride, count, components, range);
   }
 }
 

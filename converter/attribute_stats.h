@@ -21,7 +21,7 @@ class AttributeStats {
  private:
   PointLayout layout_;
   std::vector<AttributeRange> ranges_;
-  std::vector<std::uint64_t> intensities_;   ///< histogram of all 65536 values; empty without intensity
+  std::vector<std::uint64_t> intensities_;  ///< histogram of all 65536 values; empty without intensity
   std::uint64_t points_ = 0;
 };
 

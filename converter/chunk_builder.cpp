@@ -40,7 +40,8 @@ class ChunkBuilder {
     const bool allAlike = begin < end && keys_[begin] == keys_[end - 1];
     std::vector<std::uint32_t> own;
     if (end - begin <= capacity || deepest || allAlike) {
-      own.assign(index_.begin() + static_cast<std::ptrdiff_t>(begin), index_.begin() + static_cast<std::ptrdiff_t>(end));
+      own.assign(index_.begin() + static_cast<std::ptrdiff_t>(begin),
+                 index_.begin() + static_cast<std::ptrdiff_t>(end));
       end = begin;
     } else {
       const std::uint64_t inside = (std::uint64_t{1} << (3 * levelsBelow)) - 1;
@@ -107,8 +108,8 @@ class ChunkBuilder {
   const NodeKey cell_;
   const std::vector<std::byte> points_;
   const int keyLevels_;
-  std::vector<std::uint64_t> keys_;     ///< ascending
-  std::vector<std::uint32_t> index_;    ///< into points_, along with keys_
+  std::vector<std::uint64_t> keys_;   ///< ascending
+  std::vector<std::uint32_t> index_;  ///< into points_, along with keys_
 };
 
 }  // namespace

@@ -8,9 +8,9 @@ namespace strata {
 
 /// The subtree of one bucket's cell, but for its top node: ancestors still take points out of that one.
 struct BuiltChunk {
-  std::vector<BuiltNode> nodes;             ///< below the top node, in depth-first order
-  std::vector<std::byte> topPoints;         ///< packed, in Morton order
-  std::vector<SubtreeShape> topChildren;    ///< shapes of the top node's subtrees
+  std::vector<BuiltNode> nodes;           ///< below the top node, in depth-first order
+  std::vector<std::byte> topPoints;       ///< packed, in Morton order
+  std::vector<SubtreeShape> topChildren;  ///< shapes of the top node's subtrees
 };
 
 /// Builds the nodes of `cell` from all of its points (packed, in the order of the input), in memory, top down

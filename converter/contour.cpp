@@ -4,7 +4,7 @@
 
 namespace strata {
 namespace {
-constexpr double kClassThreshold = 0.03;   // Kanzok 2015, 3.1
+constexpr double kClassThreshold = 0.03;  // Kanzok 2015, 3.1
 constexpr std::array<std::pair<int, int>, 6> kPairs{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
 }  // namespace
 
@@ -36,7 +36,7 @@ Anisotropy anisotropy(const Moments& moments) {
   }
   const double scale = matrix.cwiseAbs().maxCoeff();
   if (!(scale > 0.0)) return out;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix / scale);   // ascending eigenvalues
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix / scale);  // ascending eigenvalues
   const Eigen::Vector3d l = solver.eigenvalues().cwiseMax(0.0);
   const double sum = l.sum();
   if (!(sum > 0.0)) return out;

@@ -11,7 +11,7 @@ namespace strata {
 struct Moments {
   double count = 0.0;
   glm::dvec3 mean{0.0};
-  std::array<double, 6> scatter{};   ///< sums of (xx, xy, xz, yy, yz, zz) about the mean
+  std::array<double, 6> scatter{};  ///< sums of (xx, xy, xz, yy, yz, zz) about the mean
 
   void add(const glm::dvec3& point);
   void add(const Moments& other);
@@ -32,10 +32,10 @@ ContourClass classify(const Anisotropy& anisotropy);
 /// may cull its children (docs/decisions/0002-contours-bound-subtrees.md).
 struct SubtreeShape {
   Moments moments;
-  Box box;                              ///< axis-aligned, world
+  Box box;  ///< axis-aligned, world
   ContourClass contourClass = ContourClass::volumetric;
-  glm::dvec3 centre{0.0};               ///< of the contour
-  std::array<glm::dvec3, 3> halfAxes{}; ///< orthogonal
+  glm::dvec3 centre{0.0};                ///< of the contour
+  std::array<glm::dvec3, 3> halfAxes{};  ///< orthogonal
 
   std::array<glm::dvec3, 8> corners() const;
 };

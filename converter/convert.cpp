@@ -115,8 +115,8 @@ Distribution readInputs(const Sources& sources, const ConvertOptions& options, S
   for (int attempt = 0;; ++attempt) {
     frame = survey(sources, measured);
     const PackedFormat format = packedFormat(frame);
-    Distribution all = distribute(sources, frame, format, chunkPointLimit(options.memoryBytes, format), options, spill,
-                                  control);
+    Distribution all =
+        distribute(sources, frame, format, chunkPointLimit(options.memoryBytes, format), options, spill, control);
     const double extent = glm::max(all.bounds.size().x, glm::max(all.bounds.size().y, all.bounds.size().z));
     const bool farTooLarge = all.points > 0 && extent + 1.0 <= std::ldexp(1.0, frame.cubeBits - 2);
     if (attempt > 0 || (!all.outsideCube && !farTooLarge)) return all;
@@ -179,23 +179,23 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
   arena.execute([&] {
     tbb::parallel_pipeline(
         static_cast<std::size_t>(std::min(options.threads, kChunksAtOnce)),
-        tbb::make_filter<void, std::shared_ptr<Work>>(
-            tbb::filter_mode::serial_in_order,
-            [&](tbb::flow_control& flow) -> std::shared_ptr<Work> {
-              if (next == buckets.size()) {
-                flow.stop();
-                return nullptr;
-              }
-              control.checkStop();
-              Bucket& bucket = buckets[next++];
-              auto work = std::make_shared<Work>();
-              work->cell = bucket.cell;
-              work->count = bucket.points;
-              work->points.reserve(bucket.points * frame.format.stride());
-              for (Bucket::Block& block : bucket.blocks) spill.take(block.handle, work->points);
-              bucket.blocks = {};
-              return work;
-            }) &
+        tbb::make_filter<void, std::shared_ptr<Work>>(tbb::filter_mode::serial_in_order,
+                                                      [&](tbb::flow_control& flow) -> std::shared_ptr<Work> {
+                                                        if (next == buckets.size()) {
+                                                          flow.stop();
+                                                          return nullptr;
+                                                        }
+                                                        control.checkStop();
+                                                        Bucket& bucket = buckets[next++];
+                                                        auto work = std::make_shared<Work>();
+                                                        work->cell = bucket.cell;
+                                                        work->count = bucket.points;
+                                                        work->points.reserve(bucket.points * frame.format.stride());
+                                                        for (Bucket::Block& block : bucket.blocks)
+                                                          spill.take(block.handle, work->points);
+                                                        bucket.blocks = {};
+                                                        return work;
+                                                      }) &
             tbb::make_filter<std::shared_ptr<Work>, std::shared_ptr<Work>>(
                 tbb::filter_mode::parallel,
                 [&](std::shared_ptr<Work> work) {
@@ -213,8 +213,7 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
 }
 
 void checkOptions(const ConvertOptions& options) {
-  if (fs::exists(options.output) && !options.force)
-    throw Error(options.output, "exists already; --force replaces it");
+  if (fs::exists(options.output) && !options.force) throw Error(options.output, "exists already; --force replaces it");
   if (options.force && fs::exists(options.output) && !fs::exists(options.output + "/" + kInfoFile))
     throw Error(options.output, "is not a store, so --force does not replace it");
   const fs::path parent = fs::absolute(options.output).parent_path();

@@ -19,8 +19,8 @@
 namespace strata {
 namespace {
 
-constexpr int kMostFirstLevel = 5;     // 8^5 cells at most in the first pass
-constexpr int kSplitLevels = 2;        // a cell too large becomes up to 64
+constexpr int kMostFirstLevel = 5;  // 8^5 cells at most in the first pass
+constexpr int kSplitLevels = 2;     // a cell too large becomes up to 64
 constexpr std::size_t kLeastSlab = 65536;
 constexpr std::size_t kMostSlab = 1 << 20;
 /// A cell of the deepest level cannot be split; this many bucket limits still fit the memory cap.
@@ -29,8 +29,8 @@ constexpr std::uint64_t kDeepestCellLimits = 3;
 /// Cells of one level below a cell, addressed by their Morton index inside it.
 struct CellGrid {
   NodeKey parent;
-  int levels = 0;       ///< below the parent
-  int shift = 0;        ///< of a grid integer to get the cell at that level
+  int levels = 0;  ///< below the parent
+  int shift = 0;   ///< of a grid integer to get the cell at that level
   std::uint64_t mask = 0;
 
   CellGrid(NodeKey parentCell, int levelsBelow, int cubeBits)
@@ -73,8 +73,8 @@ class BucketSet {
       std::memcpy(sorted.data() + next[cells[i]]++ * stride, points.data() + i * stride, stride);
     for (std::size_t c = 0; c < buckets_.size(); ++c) {
       if (starts[c] == starts[c + 1]) continue;
-      Spill::Handle handle = spill_.put(
-          std::span(sorted).subspan(starts[c] * stride, (starts[c + 1] - starts[c]) * stride));
+      Spill::Handle handle =
+          spill_.put(std::span(sorted).subspan(starts[c] * stride, (starts[c + 1] - starts[c]) * stride));
       const std::lock_guard lock(mutex_);
       buckets_[c].points += starts[c + 1] - starts[c];
       buckets_[c].blocks.push_back({sequence, std::move(handle)});
@@ -98,7 +98,7 @@ class BucketSet {
   const PackedFormat format_;
   Spill& spill_;
   std::mutex mutex_;
-  std::vector<Bucket> buckets_;   ///< by cell index; guarded by mutex_
+  std::vector<Bucket> buckets_;  ///< by cell index; guarded by mutex_
 };
 
 /// What one thread has seen.
@@ -247,8 +247,10 @@ void splitBucket(Bucket bucket, const PackedFormat& format, int cubeBits, std::u
   const int room = std::min(NodeKey::kDeepestLevel, cubeBits) - bucket.cell.level();
   if (bucket.points <= limit || room <= 0) {
     if (bucket.points > kDeepestCellLimits * limit)
-      throw Error("node " + bucket.cell.text() + ": more points than --memory can hold lie in one cell of the deepest level, found " +
-                  std::to_string(bucket.points) + " (expected at most " + std::to_string(kDeepestCellLimits * limit) + ")");
+      throw Error("node " + bucket.cell.text() +
+                  ": more points than --memory can hold lie in one cell of the deepest level, found " +
+                  std::to_string(bucket.points) + " (expected at most " + std::to_string(kDeepestCellLimits * limit) +
+                  ")");
     out.push_back(std::move(bucket));
     return;
   }
@@ -262,7 +264,8 @@ void splitBucket(Bucket bucket, const PackedFormat& format, int cubeBits, std::u
     parts.add(slab, sequence++);
     slab.clear();
   }
-  for (Bucket& part : parts.take()) splitBucket(std::move(part), format, cubeBits, limit, slabPoints, spill, control, out);
+  for (Bucket& part : parts.take())
+    splitBucket(std::move(part), format, cubeBits, limit, slabPoints, spill, control, out);
 }
 
 /// The largest cells whose points stay within the limit, from the top down. `first` to `last` lie inside `cell`.

@@ -16,23 +16,23 @@ namespace strata {
 /// read them: that is what makes a conversion repeatable.
 struct Bucket {
   struct Block {
-    std::uint64_t sequence = 0;   ///< place of its points in the order of the input
+    std::uint64_t sequence = 0;  ///< place of its points in the order of the input
     Spill::Handle handle;
   };
   NodeKey cell;
   std::uint64_t points = 0;
-  std::vector<Block> blocks;      ///< sorted by sequence
+  std::vector<Block> blocks;  ///< sorted by sequence
 };
 
 /// Result of reading every input (design section 5, stage 2).
 struct Distribution {
-  std::vector<Bucket> buckets;              ///< disjoint cells in Morton order, none above the point limit
-  Box bounds;                               ///< tight, in grid integers
+  std::vector<Bucket> buckets;  ///< disjoint cells in Morton order, none above the point limit
+  Box bounds;                   ///< tight, in grid integers
   std::uint64_t points = 0;
   std::vector<std::uint64_t> sourcePoints;  ///< kept, by source
   std::vector<std::uint64_t> sourceSkipped;
-  std::vector<AttributeRange> ranges;       ///< by attribute of the layout
-  bool outsideCube = false;                 ///< a header lied: points lie outside the cube; the buckets are incomplete
+  std::vector<AttributeRange> ranges;  ///< by attribute of the layout
+  bool outsideCube = false;            ///< a header lied: points lie outside the cube; the buckets are incomplete
 };
 
 /// Reads all sources, in parallel over their parts, into cells of the octree; then splits cells of more than

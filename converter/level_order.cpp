@@ -94,7 +94,7 @@ std::vector<std::uint32_t> selectRepresentatives(const SortedKeys& points, std::
   const std::size_t wanted = std::min(vacant, capacity > full ? capacity - full : 0);
   std::vector<std::uint32_t> kept;
   kept.reserve(full + wanted);
-  std::size_t share = 0;   // reaches `vacant` every vacant / wanted cells
+  std::size_t share = 0;  // reaches `vacant` every vacant / wanted cells
   for (std::size_t first = 0; first < points.keys.size();) {
     const std::size_t end = cellEnd(points, first, 3 * cellLevels);
     const std::uint32_t representative = nearestToCentre(points, first, end, cellLevels);

@@ -23,10 +23,10 @@ std::vector<std::uint32_t> selectRepresentatives(const SortedKeys& points, std::
 /// one nearest to the cell's centre. Inside a level the points come in 16 interleaved passes over the Morton order, so
 /// that a prefix that ends inside a level is even as well; batches are a little wider for it.
 struct LevelOrder {
-  std::vector<std::uint32_t> order;    ///< indices into the points
-  std::vector<std::uint32_t> prefix;   ///< points up to and including level i; at most NodeRecord::kMaxPrefixes,
-                                       ///< the last one counts all
-  double spacing = 1.0;                ///< typical distance of neighbours, in sides of the cube
+  std::vector<std::uint32_t> order;   ///< indices into the points
+  std::vector<std::uint32_t> prefix;  ///< points up to and including level i; at most NodeRecord::kMaxPrefixes,
+                                      ///< the last one counts all
+  double spacing = 1.0;               ///< typical distance of neighbours, in sides of the cube
 };
 LevelOrder levelOrder(const SortedKeys& points);
 

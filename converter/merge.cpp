@@ -52,7 +52,8 @@ class Merger {
       for (std::size_t at = 0; at < child.points.size(); at += stride)
         keys.push_back(frame_.key(cell, child.points.data() + at));
     // Half at most, so that a chain of only children does not empty the lower ones.
-    const std::size_t capacity = std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(keys.size() / 2, 1));
+    const std::size_t capacity =
+        std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(keys.size() / 2, 1));
     const std::vector<std::uint32_t> kept = selectRepresentatives({keys, frame_.keyLevels(cell)}, capacity);
     OpenNode parent{cell, {}, {}};
     parent.points.reserve(kept.size() * stride);

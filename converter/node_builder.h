@@ -13,7 +13,7 @@ namespace strata {
 
 /// What all node building needs to know; constant over a conversion.
 struct BuildFrame {
-  StoreInfo info;        ///< layout, grid, cubeBits, colourShift and nodePoints are set
+  StoreInfo info;  ///< layout, grid, cubeBits, colourShift and nodePoints are set
   PackedFormat format;
 
   glm::dvec3 position(const std::int64_t (&grid)[3]) const {
@@ -27,7 +27,7 @@ struct BuildFrame {
 
 /// A node ready to be written.
 struct BuiltNode {
-  NodeRecord record{};                 ///< all but firstChild, childMask and offset
+  NodeRecord record{};  ///< all but firstChild, childMask and offset
   std::vector<std::byte> payload;
 };
 

@@ -11,12 +11,12 @@ namespace strata {
 
 struct ConvertOptions {
   std::vector<std::string> inputs;
-  std::string output;                ///< NAME.strata
-  std::string tempFolder;            ///< for spilled points; empty = beside the output
+  std::string output;      ///< NAME.strata
+  std::string tempFolder;  ///< for spilled points; empty = beside the output
   std::uint64_t memoryBytes = std::uint64_t{2} << 30;
-  int threads = 0;                   ///< 0 = all cores
+  int threads = 0;  ///< 0 = all cores
   std::uint32_t nodePoints = 65536;
-  bool force = false;                ///< replace an existing store
+  bool force = false;  ///< replace an existing store
   SourceOptions source;
 };
 
@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kMostNodePoints = 1u << 20;
 /// How far a stage is; called from any thread, a few times a second at most.
 struct Progress {
   const char* stage = "";
-  std::uint64_t done = 0, total = 0;   ///< points
+  std::uint64_t done = 0, total = 0;  ///< points
 };
 
 /// What a conversion reports (design section 10).
@@ -44,7 +44,7 @@ struct ConvertReport {
 /// What the stages share besides the options: progress and the wish to stop.
 struct ConvertControl {
   std::function<void(const Progress&)> progress = [](const Progress&) {};
-  const std::atomic<bool>* stop = nullptr;   ///< set from a signal handler
+  const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler
   /// Throws Error("stopped") when the user asked to.
   void checkStop() const;
 };

@@ -55,9 +55,9 @@ Spill::Handle Spill::put(std::span<const std::byte> raw) {
   Handle handle;
   handle.rawBytes = static_cast<std::uint32_t>(raw.size());
   std::vector<std::byte> packed(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(raw.size()))));
-  const int bytes = LZ4_compress_default(reinterpret_cast<const char*>(raw.data()),
-                                         reinterpret_cast<char*>(packed.data()), static_cast<int>(raw.size()),
-                                         static_cast<int>(packed.size()));
+  const int bytes =
+      LZ4_compress_default(reinterpret_cast<const char*>(raw.data()), reinterpret_cast<char*>(packed.data()),
+                           static_cast<int>(raw.size()), static_cast<int>(packed.size()));
   packed.resize(static_cast<std::size_t>(bytes));
   handle.storedBytes = static_cast<std::uint32_t>(bytes);
   if (memoryBytes_.fetch_add(packed.size()) + packed.size() <= memoryLimit_) {

@@ -16,10 +16,10 @@ namespace strata {
 class Spill {
  public:
   struct Handle {
-    std::uint64_t offset = 0;        ///< in the file, when `memory` is empty
+    std::uint64_t offset = 0;  ///< in the file, when `memory` is empty
     std::uint32_t storedBytes = 0;
     std::uint32_t rawBytes = 0;
-    std::vector<std::byte> memory;   ///< packed bytes, while they fit
+    std::vector<std::byte> memory;  ///< packed bytes, while they fit
   };
 
   Spill(const std::string& folder, std::uint64_t memoryLimit);
@@ -39,11 +39,11 @@ class Spill {
   const std::string folder_;
   const std::uint64_t memoryLimit_;
   std::atomic<std::uint64_t> memoryBytes_{0};
-  std::atomic<std::uint64_t> fileBytes_{0};       ///< held in the file now
+  std::atomic<std::uint64_t> fileBytes_{0};  ///< held in the file now
   std::atomic<std::uint64_t> peakFileBytes_{0};
   std::mutex mutex_;
-  int descriptor_ = -1;          ///< guarded by mutex_ until open
-  std::uint64_t fileEnd_ = 0;    ///< guarded by mutex_
+  int descriptor_ = -1;        ///< guarded by mutex_ until open
+  std::uint64_t fileEnd_ = 0;  ///< guarded by mutex_
 };
 
 }  // namespace strata

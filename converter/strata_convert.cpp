@@ -36,8 +36,10 @@ class ProgressLine {
     }
     const double elapsed = std::chrono::duration<double>(now - stageBegin_).count();
     const double rate = elapsed > 0.0 ? static_cast<double>(progress.done) / elapsed : 0.0;
-    const double share = progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total) : 0.0;
-    const double left = rate > 0.0 ? static_cast<double>(progress.total - std::min(progress.total, progress.done)) / rate : 0.0;
+    const double share =
+        progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total) : 0.0;
+    const double left =
+        rate > 0.0 ? static_cast<double>(progress.total - std::min(progress.total, progress.done)) / rate : 0.0;
     std::fprintf(stdout, "\r%-9s %5.1f %%  %s points  %.1f M points/s  %.0f s left   ", stage_.c_str(), 100.0 * share,
                  grouped(progress.done).c_str(), rate * 1e-6, left);
     std::fflush(stdout);
@@ -50,7 +52,7 @@ class ProgressLine {
  private:
   const bool terminal_ = ::isatty(STDOUT_FILENO) != 0;
   std::mutex mutex_;
-  std::chrono::steady_clock::time_point last_{};        ///< guarded by mutex_, as all below
+  std::chrono::steady_clock::time_point last_{};  ///< guarded by mutex_, as all below
   std::chrono::steady_clock::time_point stageBegin_{};
   std::string stage_;
   bool shown_ = false;
@@ -62,7 +64,8 @@ void printSummary(const ConvertOptions& options, const ConvertReport& report, do
               static_cast<double>(report.outputBytes) / static_cast<double>(report.points), wall,
               static_cast<double>(report.points) / wall * 1e-6);
   if (report.skipped > 0) std::printf("skipped %s points\n", grouped(report.skipped).c_str());
-  for (const ConvertReport::Stage& stage : report.stages) std::printf("  %-10s %8.2f s\n", stage.name.c_str(), stage.seconds);
+  for (const ConvertReport::Stage& stage : report.stages)
+    std::printf("  %-10s %8.2f s\n", stage.name.c_str(), stage.seconds);
   std::printf("  cpu %.1f s, memory peak %ld MiB, temporary disk peak %.0f MiB\n",
               seconds(usage.ru_utime) + seconds(usage.ru_stime), usage.ru_maxrss / 1024,
               static_cast<double>(report.tempPeakBytes) / 1048576.0);
@@ -98,7 +101,8 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(kLeastNodePoints, kMostNodePoints))
       ->capture_default_str();
   app.add_option("--temp", options.tempFolder, "folder for temporary points (default: beside the store)");
-  app.add_option("--columns", options.source.columns, "columns of text files, as in x,y,z,intensity,r,g,b; - skips one");
+  app.add_option("--columns", options.source.columns,
+                 "columns of text files, as in x,y,z,intensity,r,g,b; - skips one");
   app.add_flag("--skip-damaged", options.source.skipDamaged, "convert what is sound of a damaged scan");
   app.add_flag("--resume", resume, "take up an interrupted conversion: what it left is cleared and done again");
   app.add_flag("--force", options.force, "replace an existing store");

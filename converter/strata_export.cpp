@@ -23,7 +23,8 @@ bool mayHoldWanted(const NodeRecord& record, const StoreInfo& info, const Filter
   if (key.level() > filter.deepestLevel) return false;
   if (!filter.box) return true;
   const Box cube = nodeCube(key, info.rootCube());
-  return glm::all(glm::lessThanEqual(cube.min, filter.box->max)) && glm::all(glm::greaterThanEqual(cube.max, filter.box->min));
+  return glm::all(glm::lessThanEqual(cube.min, filter.box->max)) &&
+         glm::all(glm::greaterThanEqual(cube.max, filter.box->min));
 }
 
 NodePoints wantedPoints(const Store& store, std::uint32_t node, const Filter& filter) {
@@ -33,7 +34,8 @@ NodePoints wantedPoints(const Store& store, std::uint32_t node, const Filter& fi
   const std::size_t stride = info.layout.stride();
   NodePoints kept;
   for (std::size_t i = 0; i < all.count(); ++i) {
-    const glm::dvec3 p = info.grid.offset + info.grid.scale * glm::dvec3(all.grid[0][i], all.grid[1][i], all.grid[2][i]);
+    const glm::dvec3 p =
+        info.grid.offset + info.grid.scale * glm::dvec3(all.grid[0][i], all.grid[1][i], all.grid[2][i]);
     if (!filter.box->contains(p)) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) kept.grid[axis].push_back(all.grid[axis][i]);
     kept.attributes.insert(kept.attributes.end(), all.attributes.begin() + static_cast<std::ptrdiff_t>(i * stride),
@@ -66,7 +68,8 @@ std::uint64_t countWanted(const Store& store, const Filter& filter, Box& bounds)
 std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
                                          const Box& bounds) {
   const std::string extension = std::filesystem::path(path).extension().string();
-  if (extension == ".las" || extension == ".laz") return createLasWriter(path, info, points, bounds, extension == ".laz");
+  if (extension == ".las" || extension == ".laz")
+    return createLasWriter(path, info, points, bounds, extension == ".laz");
   return createPlyWriter(path, info, points);
 }
 

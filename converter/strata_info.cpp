@@ -47,8 +47,8 @@ void printText(const Store& store) {
   std::printf("  points      %s in %s nodes on %d levels, %.2f bytes a point\n", grouped(info.points).c_str(),
               grouped(info.nodes).c_str(), info.levels,
               static_cast<double>(store.points().size()) / static_cast<double>(info.points));
-  std::printf("  bounds      %.3f %.3f %.3f to %.3f %.3f %.3f\n", info.bounds.min.x, info.bounds.min.y, info.bounds.min.z,
-              info.bounds.max.x, info.bounds.max.y, info.bounds.max.z);
+  std::printf("  bounds      %.3f %.3f %.3f to %.3f %.3f %.3f\n", info.bounds.min.x, info.bounds.min.y,
+              info.bounds.min.z, info.bounds.max.x, info.bounds.max.y, info.bounds.max.z);
   std::printf("  grid        %g %g %g m, %s\n", info.grid.scale.x, info.grid.scale.y, info.grid.scale.z,
               info.grid.exact ? "every coordinate exact" : "coordinates within half a step");
   std::printf("  crs         %s\n", info.crs.empty() ? "not stated" : info.crs.c_str());
@@ -89,8 +89,9 @@ int run(int argc, char** argv) {
   else
     printText(store);
   if (!report.problems.empty())
-    throw Error(path, report.problems.front() +
-                          (report.problems.size() > 1 ? " (and " + std::to_string(report.problems.size() - 1) + " more)" : ""));
+    throw Error(
+        path, report.problems.front() +
+                  (report.problems.size() > 1 ? " (and " + std::to_string(report.problems.size() - 1) + " more)" : ""));
   if (verify && !json) std::printf("  verified    %s nodes, all sound\n", grouped(report.checkedNodes).c_str());
   return 0;
 }

@@ -16,9 +16,9 @@
 namespace strata {
 namespace {
 
-constexpr int kMostCubeBits = 52;          // integers that a double holds exactly
+constexpr int kMostCubeBits = 52;  // integers that a double holds exactly
 constexpr std::size_t kMeasureBlock = 65536;
-constexpr double kGridTolerance = 1e-4;    // of a step: what decimal scale factors lose in binary
+constexpr double kGridTolerance = 1e-4;  // of a step: what decimal scale factors lose in binary
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -27,7 +27,7 @@ bool isWhole(double value) { return std::abs(value - std::round(value)) <= kGrid
 /// The steps of one axis over all sources.
 struct AxisGrid {
   double step = 0.0;
-  double anchor = 0.0;   ///< a coordinate on the grid
+  double anchor = 0.0;  ///< a coordinate on the grid
   bool exact = true;
 };
 
@@ -48,7 +48,7 @@ AxisGrid commonGrid(const std::vector<std::unique_ptr<PointSource>>& sources, co
     grid.step = finest / divisor;
     if (fits(grid.step)) return grid;
   }
-  grid.step = finest / 16.0;   // close enough to round back to each source's own integers
+  grid.step = finest / 16.0;  // close enough to round back to each source's own integers
   grid.exact = false;
   return grid;
 }
@@ -91,14 +91,15 @@ PointLayout unitedLayout(const std::vector<std::unique_ptr<PointSource>>& source
   std::vector<Attribute> united;
   for (const auto& source : sources)
     for (const Attribute& a : source->info().layout.attributes()) {
-      const auto same = std::find_if(united.begin(), united.end(), [&](const Attribute& u) { return u.name == a.name; });
+      const auto same =
+          std::find_if(united.begin(), united.end(), [&](const Attribute& u) { return u.name == a.name; });
       if (same == united.end())
         united.push_back(a);
       else if (same->type != a.type || same->components != a.components)
-        throw Error(source->info().path, "attribute '" + a.name + "' has another type than in the files before, found " +
-                                             std::string(scalarName(a.type)) + " x " + std::to_string(a.components) +
-                                             " (expected " + std::string(scalarName(same->type)) + " x " +
-                                             std::to_string(same->components) + ")");
+        throw Error(source->info().path,
+                    "attribute '" + a.name + "' has another type than in the files before, found " +
+                        std::string(scalarName(a.type)) + " x " + std::to_string(a.components) + " (expected " +
+                        std::string(scalarName(same->type)) + " x " + std::to_string(same->components) + ")");
     }
   return PointLayout(std::move(united));
 }
@@ -181,7 +182,7 @@ void ConvertControl::checkStop() const {
 bool headerBoundsUsable(const SourceInfo& info) {
   if (!info.gridExact || info.bounds.empty() || !finite(info.bounds.min) || !finite(info.bounds.max)) return false;
   if (!info.las) return true;
-  for (int axis = 0; axis < 3; ++axis)   // a LAS coordinate is a 32-bit integer
+  for (int axis = 0; axis < 3; ++axis)  // a LAS coordinate is a 32-bit integer
     for (const double edge : {info.bounds.min[axis], info.bounds.max[axis]})
       if (std::abs((edge - info.origin[axis]) / info.step[axis]) > 2147483649.0) return false;
   return true;

@@ -12,13 +12,13 @@ namespace strata {
 /// How one source's points become points of the store.
 struct SourceMapping {
   struct Column {
-    std::size_t from, to, bytes;   ///< offsets in the source's and the store's record
+    std::size_t from, to, bytes;  ///< offsets in the source's and the store's record
   };
   std::vector<Column> columns;
-  bool sameLayout = false;         ///< records can be copied whole
-  glm::dvec3 originDelta{0.0};     ///< source origin - store grid offset
-  int colourShiftAt = -1;          ///< offset in the store's record of attribute::kColourShift, or -1
-  std::uint8_t colourShift = 0;    ///< of this source
+  bool sameLayout = false;       ///< records can be copied whole
+  glm::dvec3 originDelta{0.0};   ///< source origin - store grid offset
+  int colourShiftAt = -1;        ///< offset in the store's record of attribute::kColourShift, or -1
+  std::uint8_t colourShift = 0;  ///< of this source
 };
 
 /// The frame of the conversion, known before points are read (design section 5, stage 1).
@@ -29,13 +29,13 @@ struct Survey {
   std::string crs;
   std::optional<LasMeta> las;
   std::uint64_t claimedPoints = 0;
-  std::vector<SourceMapping> mappings;   ///< one a source
+  std::vector<SourceMapping> mappings;  ///< one a source
 };
 
 /// Bounds and typical magnitude of a source whose header cannot tell.
 struct MeasuredSource {
-  Box bounds;                  ///< of finite points, relative to the source's origin
-  double typicalMagnitude = 0; ///< median over the points of the largest |coordinate|, as a power of two
+  Box bounds;                   ///< of finite points, relative to the source's origin
+  double typicalMagnitude = 0;  ///< median over the points of the largest |coordinate|, as a power of two
 };
 
 /// Reads the points of a source once for their extent; in parallel over its parts.

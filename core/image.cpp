@@ -45,7 +45,8 @@ void writePng(const std::string& path, const Image& image) {
 Image readPng(const std::string& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
-  if (!png_image_begin_read_from_file(&png, path.c_str())) throw Error(path, std::string("reading PNG: ") + png.message);
+  if (!png_image_begin_read_from_file(&png, path.c_str()))
+    throw Error(path, std::string("reading PNG: ") + png.message);
   png.format = PNG_FORMAT_RGBA;
   Image image{static_cast<int>(png.width), static_cast<int>(png.height), {}};
   image.pixels.resize(static_cast<std::size_t>(png.width) * png.height);

@@ -13,9 +13,9 @@ struct Batch {
 
   std::uint32_t firstPoint = 0;  ///< within the node
   std::uint32_t pointCount = 0;
-  glm::dvec3 boxMin{0.0};        ///< relative to NodeData::origin; a multiple of the store's grid step
-  glm::dvec3 boxSize{0.0};       ///< 2^bits grid steps along each axis: what the 30-bit coordinates span
-  glm::u8vec3 bits{0};           ///< bits an axis that carry information; above 30 the rest is not drawn
+  glm::dvec3 boxMin{0.0};   ///< relative to NodeData::origin; a multiple of the store's grid step
+  glm::dvec3 boxSize{0.0};  ///< 2^bits grid steps along each axis: what the 30-bit coordinates span
+  glm::u8vec3 bits{0};      ///< bits an axis that carry information; above 30 the rest is not drawn
 };
 
 /// How many of a coordinate's 30 bits are used: 10, 20 or 30 (Schütz 2022, 3.3).
@@ -29,16 +29,16 @@ enum class Precision : std::uint8_t { low10 = 1, medium20 = 2, full30 = 3 };
 /// source's integer exactly).
 struct NodeData {
   NodeKey key;
-  glm::dvec3 origin{0.0};                      ///< world
-  std::vector<Batch> batches;                  ///< by ascending firstPoint; cover all points
-  std::vector<std::uint32_t> position[3];      ///< x | y<<10 | z<<20; [1] and [2] are empty when not loaded
-  std::vector<std::uint32_t> colour;           ///< R | G<<8 | B<<16 | 255<<24; empty when the store has none
-  std::vector<std::uint16_t> intensity;        ///< empty when the store has none
-  std::vector<std::uint8_t> classification;    ///< empty when the store has none
+  glm::dvec3 origin{0.0};                    ///< world
+  std::vector<Batch> batches;                ///< by ascending firstPoint; cover all points
+  std::vector<std::uint32_t> position[3];    ///< x | y<<10 | z<<20; [1] and [2] are empty when not loaded
+  std::vector<std::uint32_t> colour;         ///< R | G<<8 | B<<16 | 255<<24; empty when the store has none
+  std::vector<std::uint16_t> intensity;      ///< empty when the store has none
+  std::vector<std::uint8_t> classification;  ///< empty when the store has none
 
   std::uint32_t pointCount() const { return static_cast<std::uint32_t>(position[0].size()); }
   int loadedPlanes() const { return position[1].empty() ? 1 : position[2].empty() ? 2 : 3; }
-  std::uint64_t bytes() const;                 ///< of memory held
+  std::uint64_t bytes() const;  ///< of memory held
 };
 
 /// The position of one point in double precision, as every rasterizer must place it.

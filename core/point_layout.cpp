@@ -11,8 +11,16 @@ struct ScalarInfo {
   std::string_view name;
   std::size_t bytes;
 };
-constexpr std::array<ScalarInfo, 10> kScalars{{{"u8", 1}, {"i8", 1}, {"u16", 2}, {"i16", 2}, {"u32", 4},
-                                               {"i32", 4}, {"u64", 8}, {"i64", 8}, {"f32", 4}, {"f64", 8}}};
+constexpr std::array<ScalarInfo, 10> kScalars{{{"u8", 1},
+                                               {"i8", 1},
+                                               {"u16", 2},
+                                               {"i16", 2},
+                                               {"u32", 4},
+                                               {"i32", 4},
+                                               {"u64", 8},
+                                               {"i64", 8},
+                                               {"f32", 4},
+                                               {"f64", 8}}};
 }  // namespace
 
 std::size_t scalarBytes(ScalarType type) { return kScalars.at(static_cast<std::size_t>(type)).bytes; }

@@ -17,11 +17,11 @@ struct RenderItem {
 /// What one LOD pass decided to draw. The only thing that lod hands to render.
 /// A point's id in a frame is (sum of the pointCount of the items before) + its index in the node.
 struct RenderList {
-  View view;                        ///< the view that the list was selected for
-  std::vector<RenderItem> items;    ///< in a fixed order for a given view and set of resident nodes
-  std::uint64_t pointCount = 0;     ///< sum over items; kept under 2^32 - 1
-  std::uint32_t missingNodes = 0;   ///< wanted, but not resident (a parent stands in)
-  std::uint64_t serial = 0;         ///< counts LOD passes
+  View view;                       ///< the view that the list was selected for
+  std::vector<RenderItem> items;   ///< in a fixed order for a given view and set of resident nodes
+  std::uint64_t pointCount = 0;    ///< sum over items; kept under 2^32 - 1
+  std::uint32_t missingNodes = 0;  ///< wanted, but not resident (a parent stands in)
+  std::uint64_t serial = 0;        ///< counts LOD passes
 };
 
 }  // namespace strata

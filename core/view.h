@@ -12,10 +12,10 @@ struct View {
   glm::dvec3 eye{0.0, -1.0, 0.0};
   glm::dvec3 target{0.0};
   glm::dvec3 up{0.0, 0.0, 1.0};
-  double fovY = 1.0471975511965976;   ///< radians
+  double fovY = 1.0471975511965976;  ///< radians
   bool orthographic = false;
-  double orthographicHeight = 1.0;    ///< metres seen from top to bottom of the image
-  double nearPlane = 0.01;            ///< metres; points nearer than this are not drawn. There is no far plane
+  double orthographicHeight = 1.0;  ///< metres seen from top to bottom of the image
+  double nearPlane = 0.01;          ///< metres; points nearer than this are not drawn. There is no far plane
   int width = 1920;
   int height = 1080;
 
@@ -42,7 +42,8 @@ Projection projection(const View& view);
 std::array<glm::dvec4, 5> frustumPlanes(const View& view);
 
 /// True when some of `box` (relative to the eye: box - eye) may be inside; never false for a box that is.
-bool boxInFrustum(const std::array<glm::dvec4, 5>& planes, const glm::dvec3& minRelative, const glm::dvec3& maxRelative);
+bool boxInFrustum(const std::array<glm::dvec4, 5>& planes, const glm::dvec3& minRelative,
+                  const glm::dvec3& maxRelative);
 
 /// Pixels that a length of `metres` covers at `depth` metres in front of the eye.
 double pixelsAt(const View& view, double metres, double depth);

@@ -125,7 +125,8 @@ bool takeSourceGrid(const StoreInfo& info, const Box& bounds, LasTarget& target)
     const double shift = std::round(steps);
     if (!(std::abs(steps - shift) <= kSameGrid) || std::abs(shift) > 0x1p53) return false;
     const Reach reach = reachOf(info, bounds, axis);
-    if ((reach.first + shift) / divide < kSmallestInteger || (reach.last + shift) / divide > kLargestInteger) return false;
+    if ((reach.first + shift) / divide < kSmallestInteger || (reach.last + shift) / divide > kLargestInteger)
+      return false;
     target.shift[axis] = static_cast<std::int64_t>(shift);
     target.divide[axis] = static_cast<std::int64_t>(divide);
   }

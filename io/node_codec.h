@@ -11,8 +11,8 @@ namespace strata {
 
 /// The points of one node in full: what the converter writes and an export reads back.
 struct NodePoints {
-  std::vector<std::int64_t> grid[3];     ///< integers of StoreGrid
-  std::vector<std::byte> attributes;     ///< records of StoreInfo::layout
+  std::vector<std::int64_t> grid[3];  ///< integers of StoreGrid
+  std::vector<std::byte> attributes;  ///< records of StoreInfo::layout
 
   std::size_t count() const { return grid[0].size(); }
 };

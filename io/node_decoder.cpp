@@ -86,8 +86,8 @@ class PayloadReader {
         break;
       case kLz4:
         if (LZ4_decompress_safe(reinterpret_cast<const char*>(stored.data()), reinterpret_cast<char*>(raw_.data()),
-                                static_cast<int>(stored.size()), static_cast<int>(rawBytes)) !=
-            static_cast<int>(rawBytes))
+                                static_cast<int>(stored.size()),
+                                static_cast<int>(rawBytes)) != static_cast<int>(rawBytes))
           fail("block does not decompress");
         break;
       default:
@@ -174,7 +174,8 @@ void decodeColour(PayloadReader& payload, const StoreInfo& info, std::size_t off
   const int ownShift = info.layout.find(attribute::kColourShift);
   const auto shift = [&](std::size_t i) {
     if (ownShift < 0) return info.colourShift;
-    return static_cast<int>(points.attributes[i * stride + info.layout.offset(static_cast<std::size_t>(ownShift))]) & 15;
+    return static_cast<int>(points.attributes[i * stride + info.layout.offset(static_cast<std::size_t>(ownShift))]) &
+           15;
   };
   std::span<const std::byte> raw = payload.plane(kColour, count * 3, 3);
   for (std::size_t channel = 0; channel < 3; ++channel)
@@ -245,8 +246,8 @@ void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span
     const auto raw = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + index), count * 2, 2);
     out.intensity.resize(count);
     for (std::size_t i = 0; i < count; ++i)
-      out.intensity[i] = static_cast<std::uint16_t>(static_cast<unsigned>(raw[i]) |
-                                                    static_cast<unsigned>(raw[count + i]) << 8);
+      out.intensity[i] =
+          static_cast<std::uint16_t>(static_cast<unsigned>(raw[i]) | static_cast<unsigned>(raw[count + i]) << 8);
   }
   if (const int index = info.layout.find(attribute::kClassification); index >= 0) {
     const auto raw = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + index), count, 1);

@@ -26,9 +26,9 @@ class PayloadWriter {
     } else {
       plane.encoding = kLz4;
       body_.resize(start + static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(raw.size()))));
-      const int packed = LZ4_compress_default(reinterpret_cast<const char*>(raw.data()),
-                                              reinterpret_cast<char*>(body_.data() + start),
-                                              static_cast<int>(raw.size()), static_cast<int>(body_.size() - start));
+      const int packed =
+          LZ4_compress_default(reinterpret_cast<const char*>(raw.data()), reinterpret_cast<char*>(body_.data() + start),
+                               static_cast<int>(raw.size()), static_cast<int>(body_.size() - start));
       body_.resize(start + static_cast<std::size_t>(packed));
       if (static_cast<std::size_t>(packed) >= raw.size()) {
         plane.encoding = kRaw;
@@ -68,8 +68,8 @@ std::vector<PayloadBatch> makeBatches(const NodePoints& points) {
     batch.pointCount = static_cast<std::uint32_t>(end - first);
     for (int axis = 0; axis < 3; ++axis) {
       const auto begin = points.grid[axis].begin();
-      const auto [low, high] = std::minmax_element(begin + static_cast<std::ptrdiff_t>(first),
-                                                   begin + static_cast<std::ptrdiff_t>(end));
+      const auto [low, high] =
+          std::minmax_element(begin + static_cast<std::ptrdiff_t>(first), begin + static_cast<std::ptrdiff_t>(end));
       batch.min[axis] = *low;
       batch.bits[axis] = static_cast<std::uint8_t>(std::bit_width(static_cast<std::uint64_t>(*high - *low)));
     }
@@ -129,9 +129,10 @@ ColourPlanes splitColour(const NodePoints& points, const StoreInfo& info, std::s
   for (std::size_t i = 0; i < count; ++i) {
     std::uint16_t rgb[3];
     std::memcpy(rgb, points.attributes.data() + i * stride + offset, sizeof rgb);
-    const int shift = ownShift < 0 ? info.colourShift
-                                   : static_cast<int>(points.attributes[i * stride + info.layout.offset(
-                                                                                         static_cast<std::size_t>(ownShift))]);
+    const int shift =
+        ownShift < 0
+            ? info.colourShift
+            : static_cast<int>(points.attributes[i * stride + info.layout.offset(static_cast<std::size_t>(ownShift))]);
     for (std::size_t c = 0; c < 3; ++c) {
       const unsigned shown = std::min(static_cast<unsigned>(rgb[c]) >> shift, 255u);
       const unsigned rest = rgb[c] - (shown << shift);

@@ -19,18 +19,18 @@ struct PayloadHead {
   std::uint16_t planeCount;
 };
 struct PayloadBatch {
-  std::int64_t min[3];        ///< grid integers
+  std::int64_t min[3];  ///< grid integers
   std::uint32_t pointCount;
-  std::uint8_t bits[3];       ///< of (grid - min), 0 to 63 an axis
+  std::uint8_t bits[3];  ///< of (grid - min), 0 to 63 an axis
   std::uint8_t reserved;
 };
 struct PayloadPlane {
-  std::uint16_t id;           ///< PlaneId, or kFirstAttributePlane + index in the layout
-  std::uint16_t encoding;     ///< PlaneEncoding
-  std::uint32_t rawBytes;     ///< after decoding
+  std::uint16_t id;        ///< PlaneId, or kFirstAttributePlane + index in the layout
+  std::uint16_t encoding;  ///< PlaneEncoding
+  std::uint32_t rawBytes;  ///< after decoding
   std::uint32_t storedBytes;
   std::uint32_t reserved;
-  std::uint64_t checksum;     ///< XXH3-64 of the stored bytes
+  std::uint64_t checksum;  ///< XXH3-64 of the stored bytes
 };
 #pragma pack(pop)
 static_assert(sizeof(PayloadHead) == 8 && sizeof(PayloadBatch) == 32 && sizeof(PayloadPlane) == 24);

@@ -26,7 +26,7 @@ class OutputFile {
  private:
   std::string path_;
   int descriptor_;
-  std::uint64_t size_ = 0;   ///< bytes appended so far
+  std::uint64_t size_ = 0;  ///< bytes appended so far
 };
 
 /// Makes the entries of a folder durable after a rename.

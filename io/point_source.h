@@ -13,8 +13,8 @@ namespace strata {
 
 /// Points as they come out of a reader, positions apart from the packed attribute records.
 struct PointBlock {
-  std::vector<glm::dvec3> positions;   ///< metres, relative to SourceInfo::origin
-  std::vector<std::byte> attributes;   ///< positions.size() records of SourceInfo::layout.stride() bytes
+  std::vector<glm::dvec3> positions;  ///< metres, relative to SourceInfo::origin
+  std::vector<std::byte> attributes;  ///< positions.size() records of SourceInfo::layout.stride() bytes
 
   std::size_t count() const { return positions.size(); }
 };
@@ -29,8 +29,8 @@ struct LasMeta {
   };
   std::uint8_t versionMinor = 2;
   std::uint8_t pointFormat = 0;
-  std::uint16_t recordBytes = 20;   ///< of the uncompressed record, extra bytes included
-  glm::dvec3 scale{0.001};          ///< of the header; an export uses them again where the points fit
+  std::uint16_t recordBytes = 20;  ///< of the uncompressed record, extra bytes included
+  glm::dvec3 scale{0.001};         ///< of the header; an export uses them again where the points fit
   glm::dvec3 offset{0.0};
   std::uint16_t globalEncoding = 0;
   std::uint16_t fileSourceId = 0;
@@ -38,23 +38,23 @@ struct LasMeta {
   std::uint16_t creationYear = 0;
   std::string systemIdentifier;
   std::string generatingSoftware;
-  std::vector<Vlr> vlrs;            ///< without LASzip's own and COPC's
+  std::vector<Vlr> vlrs;  ///< without LASzip's own and COPC's
 };
 
 /// What is known of one scan before its points are read.
 struct SourceInfo {
-  std::string path;                 ///< as the user gave it; for messages and the store's list of sources
-  std::string format;               ///< "LAZ 1.4 format 8", "PLY binary", "synthetic city"
-  std::uint64_t pointCount = 0;     ///< as the header claims, already checked against the file's size
-  bool boundsExact = false;         ///< the header's bounds can be trusted to hold every point (else they are a hint)
-  Box bounds;                       ///< world; empty when the format states none
-  glm::dvec3 origin{0.0};           ///< what block positions are relative to (LAS: the header's offset)
-  glm::dvec3 step{0.0};             ///< the source's grid (LAS: its scale factors); for float sources the size of
-                                    ///< the last digit that carries information (text: of its decimals; float32:
-                                    ///< about one ulp of the largest coordinate); 0 = unknown
-  bool gridExact = false;           ///< every position is origin + integer * step
+  std::string path;              ///< as the user gave it; for messages and the store's list of sources
+  std::string format;            ///< "LAZ 1.4 format 8", "PLY binary", "synthetic city"
+  std::uint64_t pointCount = 0;  ///< as the header claims, already checked against the file's size
+  bool boundsExact = false;      ///< the header's bounds can be trusted to hold every point (else they are a hint)
+  Box bounds;                    ///< world; empty when the format states none
+  glm::dvec3 origin{0.0};        ///< what block positions are relative to (LAS: the header's offset)
+  glm::dvec3 step{0.0};          ///< the source's grid (LAS: its scale factors); for float sources the size of
+                                 ///< the last digit that carries information (text: of its decimals; float32:
+                                 ///< about one ulp of the largest coordinate); 0 = unknown
+  bool gridExact = false;        ///< every position is origin + integer * step
   PointLayout layout;
-  std::string crs;                  ///< WKT, or "EPSG:n", or empty
+  std::string crs;  ///< WKT, or "EPSG:n", or empty
   std::uint64_t fileBytes = 0;
   std::uint64_t uncompressedBytes = 0;  ///< as plain records; what "input size" means for LAZ
   std::optional<LasMeta> las;
@@ -80,9 +80,10 @@ class PointSource {
 };
 
 struct SourceOptions {
-  std::string columns;              ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
-  std::uint64_t memoryBytes = std::uint64_t{2} << 30;  ///< a source that must hold its file whole refuses beyond a share of this
-  bool skipDamaged = false;         ///< read what is sound of a damaged file; what is missing counts as skipped
+  std::string columns;  ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
+  std::uint64_t memoryBytes = std::uint64_t{2}
+                              << 30;  ///< a source that must hold its file whole refuses beyond a share of this
+  bool skipDamaged = false;           ///< read what is sound of a damaged file; what is missing counts as skipped
 };
 
 /// Every scan that `inputs` names (files, folders, `synthetic:NAME?points=1e6&seed=1`), in a fixed order

@@ -110,9 +110,11 @@ void checkHierarchy(const std::string& file, const Hierarchy& hierarchy, std::ui
     if (n.childMask != 0) {
       if (n.firstChild != nextChild) fail(n, "children are not in breadth-first order");
       const int children = std::popcount(n.childMask);
-      if (nextChild + static_cast<std::uint64_t>(children) > nodes.size()) fail(n, "has a child beyond the last record");
+      if (nextChild + static_cast<std::uint64_t>(children) > nodes.size())
+        fail(n, "has a child beyond the last record");
       for (int k = 0; k < children; ++k)
-        if (nodes[nextChild + static_cast<std::uint64_t>(k)].key != NodeKey{n.key}.child(childOctant(n.childMask, k)).code)
+        if (nodes[nextChild + static_cast<std::uint64_t>(k)].key !=
+            NodeKey{n.key}.child(childOctant(n.childMask, k)).code)
           fail(n, "has a child with another key");
       nextChild += static_cast<std::uint64_t>(children);
     }

@@ -20,8 +20,8 @@ inline constexpr int kStoreVersion = 1;
 struct AttributeRange {
   double min = 0.0;
   double max = 0.0;
-  double low = 0.0;    ///< 1st percentile: what drawing takes as black (equal to min where not gathered)
-  double high = 0.0;   ///< 99th percentile
+  double low = 0.0;   ///< 1st percentile: what drawing takes as black (equal to min where not gathered)
+  double high = 0.0;  ///< 99th percentile
 };
 
 /// One input of the conversion.
@@ -29,31 +29,31 @@ struct StoreSource {
   std::string path;
   std::string format;
   std::uint64_t points = 0;
-  std::uint64_t skipped = 0;   ///< points left out: not finite, or lost to damage that the user accepted
+  std::uint64_t skipped = 0;  ///< points left out: not finite, or lost to damage that the user accepted
 };
 
 /// The grid that positions are kept on: world = offset + scale * integer, integers from 0.
 struct StoreGrid {
   glm::dvec3 scale{0.001};
   glm::dvec3 offset{0.0};
-  bool exact = true;           ///< every source coordinate lies on the grid; else within half a step of it
+  bool exact = true;  ///< every source coordinate lies on the grid; else within half a step of it
 };
 
 /// store.json, see docs/format.md.
 struct StoreInfo {
   int version = kStoreVersion;
-  std::string program;         ///< "strata 0.1.0"
+  std::string program;  ///< "strata 0.1.0"
   std::uint64_t points = 0;
   std::uint64_t nodes = 0;
-  int levels = 0;              ///< depth of the deepest node + 1
-  Box bounds;                  ///< tight, world
+  int levels = 0;  ///< depth of the deepest node + 1
+  Box bounds;      ///< tight, world
   StoreGrid grid;
-  int cubeBits = 0;            ///< the root cube spans 2^cubeBits grid steps along each axis, from integer 0
+  int cubeBits = 0;  ///< the root cube spans 2^cubeBits grid steps along each axis, from integer 0
   std::string crs;
   PointLayout layout;
-  std::vector<AttributeRange> ranges;   ///< one for each attribute of the layout
-  int colourShift = 0;         ///< drawn colour = rgb >> colourShift: 8, or 0 where the source keeps 0-255 in 16 bits
-  std::uint32_t nodePoints = 0;         ///< capacity the conversion aimed at
+  std::vector<AttributeRange> ranges;  ///< one for each attribute of the layout
+  int colourShift = 0;           ///< drawn colour = rgb >> colourShift: 8, or 0 where the source keeps 0-255 in 16 bits
+  std::uint32_t nodePoints = 0;  ///< capacity the conversion aimed at
   std::string sampling;
   std::uint64_t skipped = 0;
   std::vector<StoreSource> sources;
@@ -70,22 +70,22 @@ enum class ContourClass : std::uint8_t { volumetric = 0, planar = 1, linear = 2 
 struct NodeRecord {
   static constexpr int kMaxPrefixes = 16;
 
-  std::uint64_t key;                    ///< NodeKey::code
-  std::uint32_t firstChild;             ///< index of the first child's record; 0 = none
-  std::uint8_t childMask;               ///< bit i: octant i has a child
-  std::uint8_t contourClass;            ///< ContourClass
-  std::uint8_t prefixes;                ///< used entries of `prefix`
+  std::uint64_t key;          ///< NodeKey::code
+  std::uint32_t firstChild;   ///< index of the first child's record; 0 = none
+  std::uint8_t childMask;     ///< bit i: octant i has a child
+  std::uint8_t contourClass;  ///< ContourClass
+  std::uint8_t prefixes;      ///< used entries of `prefix`
   std::uint8_t reserved;
-  std::uint32_t pointCount;             ///< points kept in this node itself
-  float spacing;                        ///< metres between neighbouring points when the whole node is drawn
-  double centre[3];                     ///< of the contour, world
-  float halfAxis[3][3];                 ///< three half-axes, orthogonal, world metres
-  std::uint32_t prefix[kMaxPrefixes];   ///< points of the levels up to and including i; the last used = pointCount
-  std::uint32_t headBytes;              ///< size of the payload's head (batches and plane directory)
-  std::uint64_t offset;                 ///< of the payload in points.bin
-  std::uint64_t headChecksum;           ///< XXH3-64 of the head
-  std::uint32_t payloadBytes;           ///< head and all planes
-  std::uint32_t drawBytes[3];           ///< leading payload bytes that hold all that drawing needs at 10, 20, 30 bits
+  std::uint32_t pointCount;            ///< points kept in this node itself
+  float spacing;                       ///< metres between neighbouring points when the whole node is drawn
+  double centre[3];                    ///< of the contour, world
+  float halfAxis[3][3];                ///< three half-axes, orthogonal, world metres
+  std::uint32_t prefix[kMaxPrefixes];  ///< points of the levels up to and including i; the last used = pointCount
+  std::uint32_t headBytes;             ///< size of the payload's head (batches and plane directory)
+  std::uint64_t offset;                ///< of the payload in points.bin
+  std::uint64_t headChecksum;          ///< XXH3-64 of the head
+  std::uint32_t payloadBytes;          ///< head and all planes
+  std::uint32_t drawBytes[3];          ///< leading payload bytes that hold all that drawing needs at 10, 20, 30 bits
 };
 #pragma pack(pop)
 static_assert(sizeof(NodeRecord) == 184);

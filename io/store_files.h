@@ -19,11 +19,11 @@ struct HierarchyHeader {
   std::uint32_t version;
   std::uint32_t recordBytes;
   std::uint64_t nodeCount;
-  std::uint64_t pointsBytes;       ///< size of points.bin
-  std::uint64_t recordsChecksum;   ///< XXH3-64 of all records
-  std::uint64_t infoChecksum;      ///< XXH3-64 of store.json
+  std::uint64_t pointsBytes;      ///< size of points.bin
+  std::uint64_t recordsChecksum;  ///< XXH3-64 of all records
+  std::uint64_t infoChecksum;     ///< XXH3-64 of store.json
   std::uint64_t reserved;
-  std::uint64_t headerChecksum;    ///< XXH3-64 of the 56 bytes before
+  std::uint64_t headerChecksum;  ///< XXH3-64 of the 56 bytes before
 };
 struct PointsHeader {
   char magic[8];

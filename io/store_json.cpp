@@ -15,10 +15,8 @@ glm::dvec3 toVector(const Json& j) { return {j.at(0).get<double>(), j.at(1).get<
 Json toJson(const LasMeta& las) {
   Json vlrs = Json::array();
   for (const LasMeta::Vlr& v : las.vlrs)
-    vlrs.push_back({{"user_id", v.userId},
-                    {"record_id", v.recordId},
-                    {"description", v.description},
-                    {"data", v.data}});
+    vlrs.push_back(
+        {{"user_id", v.userId}, {"record_id", v.recordId}, {"description", v.description}, {"data", v.data}});
   return {{"version_minor", las.versionMinor},
           {"point_format", las.pointFormat},
           {"record_bytes", las.recordBytes},
@@ -47,8 +45,8 @@ LasMeta toLasMeta(const Json& j) {
   las.systemIdentifier = j.at("system_identifier");
   las.generatingSoftware = j.at("generating_software");
   for (const Json& v : j.at("vlrs"))
-    las.vlrs.push_back({v.at("user_id"), v.at("record_id"), v.at("description"),
-                        v.at("data").get<std::vector<std::uint8_t>>()});
+    las.vlrs.push_back(
+        {v.at("user_id"), v.at("record_id"), v.at("description"), v.at("data").get<std::vector<std::uint8_t>>()});
   return las;
 }
 

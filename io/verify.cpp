@@ -19,7 +19,8 @@ void checkPoints(const NodeRecord& record, const NodePoints& points, const Store
   const glm::dvec3 centre(record.centre[0], record.centre[1], record.centre[2]);
   const glm::dvec3 half = glm::dvec3(0.5) * info.grid.scale;
   for (std::size_t i = 0; i < points.count(); ++i) {
-    const glm::dvec3 p = info.grid.offset + info.grid.scale * glm::dvec3(points.grid[0][i], points.grid[1][i], points.grid[2][i]);
+    const glm::dvec3 p =
+        info.grid.offset + info.grid.scale * glm::dvec3(points.grid[0][i], points.grid[1][i], points.grid[2][i]);
     if (!glm::all(glm::greaterThan(p, cube.min - half)) || !glm::all(glm::lessThan(p, cube.max + half)))
       throw Error("points.bin", name + ": a point lies outside the node's cube");
     for (const auto& axis : record.halfAxis) {
@@ -67,8 +68,8 @@ VerifyReport verifyStore(const Store& store) {
   }
   checkCoverage(store, report);
   if (report.badNodes == 0 && report.points != store.info().points)
-    report.problems.push_back("store.json: point count, found " + std::to_string(report.points) + " in the nodes (expected " +
-                              std::to_string(store.info().points) + ")");
+    report.problems.push_back("store.json: point count, found " + std::to_string(report.points) +
+                              " in the nodes (expected " + std::to_string(store.info().points) + ")");
   return report;
 }
 

@@ -9,8 +9,8 @@ namespace strata {
 
 struct VerifyReport {
   std::uint64_t checkedNodes = 0;
-  std::uint64_t points = 0;               ///< in the sound nodes
-  std::vector<std::string> problems;      ///< one line for each bad node, or for the store as a whole
+  std::uint64_t points = 0;           ///< in the sound nodes
+  std::vector<std::string> problems;  ///< one line for each bad node, or for the store as a whole
   std::uint64_t badNodes = 0;
 };
 

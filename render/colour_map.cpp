@@ -21,25 +21,25 @@ constexpr std::array<Colour, 9> kElevation{{{52, 16, 92},
                                             {204, 222, 60},
                                             {252, 234, 90}}};
 
-constexpr std::array<Colour, 19> kClasses{{{150, 150, 150},    // 0 created, never classified
-                                           {185, 185, 185},    // 1 unclassified
-                                           {166, 122, 76},     // 2 ground
-                                           {156, 204, 101},    // 3 low vegetation
-                                           {85, 170, 70},      // 4 medium vegetation
-                                           {32, 120, 50},      // 5 high vegetation
-                                           {224, 102, 72},     // 6 building
-                                           {230, 40, 160},     // 7 low point (noise)
-                                           {110, 110, 150},    // 8 reserved (once model key point)
-                                           {60, 130, 220},     // 9 water
-                                           {130, 90, 150},     // 10 rail
-                                           {110, 110, 110},    // 11 road surface
-                                           {110, 110, 150},    // 12 reserved (once overlap)
-                                           {240, 220, 80},     // 13 wire, guard
-                                           {250, 180, 40},     // 14 wire, conductor
-                                           {90, 200, 200},     // 15 transmission tower
-                                           {200, 230, 120},    // 16 wire-structure connector
-                                           {190, 160, 200},    // 17 bridge deck
-                                           {230, 40, 160}}};   // 18 high noise
+constexpr std::array<Colour, 19> kClasses{{{150, 150, 150},   // 0 created, never classified
+                                           {185, 185, 185},   // 1 unclassified
+                                           {166, 122, 76},    // 2 ground
+                                           {156, 204, 101},   // 3 low vegetation
+                                           {85, 170, 70},     // 4 medium vegetation
+                                           {32, 120, 50},     // 5 high vegetation
+                                           {224, 102, 72},    // 6 building
+                                           {230, 40, 160},    // 7 low point (noise)
+                                           {110, 110, 150},   // 8 reserved (once model key point)
+                                           {60, 130, 220},    // 9 water
+                                           {130, 90, 150},    // 10 rail
+                                           {110, 110, 110},   // 11 road surface
+                                           {110, 110, 150},   // 12 reserved (once overlap)
+                                           {240, 220, 80},    // 13 wire, guard
+                                           {250, 180, 40},    // 14 wire, conductor
+                                           {90, 200, 200},    // 15 transmission tower
+                                           {200, 230, 120},   // 16 wire-structure connector
+                                           {190, 160, 200},   // 17 bridge deck
+                                           {230, 40, 160}}};  // 18 high noise
 
 constexpr std::array<Colour, 8> kLevels{{{230, 80, 70},
                                          {240, 160, 60},

@@ -7,67 +7,67 @@ namespace strata {
 
 // X(return type, name without gl, parameters): every OpenGL function that Strata calls, all of 4.3 core but
 // ClipControl (4.5 or ARB_clip_control, null where absent).
-#define STRATA_GL_FUNCTIONS(X)                                                                                    \
-  X(void, ActiveTexture, (unsigned unit))                                                                         \
-  X(void, AttachShader, (unsigned program, unsigned shader))                                                      \
-  X(void, BindBuffer, (unsigned target, unsigned buffer))                                                         \
-  X(void, BindBufferBase, (unsigned target, unsigned index, unsigned buffer))                                     \
-  X(void, BindFramebuffer, (unsigned target, unsigned framebuffer))                                               \
-  X(void, BindRenderbuffer, (unsigned target, unsigned renderbuffer))                                             \
-  X(void, BindVertexArray, (unsigned array))                                                                      \
-  X(void, BufferData, (unsigned target, std::ptrdiff_t size, const void* data, unsigned usage))                   \
-  X(void, BufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, const void* data))         \
-  X(unsigned, CheckFramebufferStatus, (unsigned target))                                                          \
-  X(void, ClearBufferData,                                                                                        \
-    (unsigned target, unsigned internalFormat, unsigned format, unsigned type, const void* data))                 \
-  X(void, ClearBufferfv, (unsigned buffer, int index, const float* value))                                        \
-  X(void, ClearBufferuiv, (unsigned buffer, int index, const unsigned* value))                                    \
-  X(void, ClipControl, (unsigned origin, unsigned depth))                                                         \
-  X(void, CompileShader, (unsigned shader))                                                                       \
-  X(unsigned, CreateProgram, ())                                                                                  \
-  X(unsigned, CreateShader, (unsigned type))                                                                      \
-  X(void, DeleteBuffers, (int count, const unsigned* buffers))                                                    \
-  X(void, DeleteFramebuffers, (int count, const unsigned* framebuffers))                                          \
-  X(void, DeleteProgram, (unsigned program))                                                                      \
-  X(void, DeleteRenderbuffers, (int count, const unsigned* renderbuffers))                                        \
-  X(void, DeleteShader, (unsigned shader))                                                                        \
-  X(void, DeleteVertexArrays, (int count, const unsigned* arrays))                                                \
-  X(void, DepthFunc, (unsigned function))                                                                         \
-  X(void, Disable, (unsigned capability))                                                                         \
-  X(void, DispatchCompute, (unsigned x, unsigned y, unsigned z))                                                  \
-  X(void, Enable, (unsigned capability))                                                                          \
-  X(void, EnableVertexAttribArray, (unsigned index))                                                              \
-  X(void, Finish, ())                                                                                             \
-  X(void, FramebufferRenderbuffer, (unsigned target, unsigned attachment, unsigned kind, unsigned renderbuffer))  \
-  X(void, GenBuffers, (int count, unsigned* buffers))                                                             \
-  X(void, GenFramebuffers, (int count, unsigned* framebuffers))                                                   \
-  X(void, GenRenderbuffers, (int count, unsigned* renderbuffers))                                                 \
-  X(void, GenVertexArrays, (int count, unsigned* arrays))                                                         \
-  X(void, GetBufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, void* data))            \
-  X(unsigned, GetError, ())                                                                                       \
-  X(void, GetInteger64v, (unsigned name, long long* value))                                                       \
-  X(void, GetIntegerv, (unsigned name, int* value))                                                               \
-  X(void, GetProgramInfoLog, (unsigned program, int capacity, int* length, char* text))                           \
-  X(void, GetProgramiv, (unsigned program, unsigned name, int* value))                                            \
-  X(void, GetShaderInfoLog, (unsigned shader, int capacity, int* length, char* text))                             \
-  X(void, GetShaderiv, (unsigned shader, unsigned name, int* value))                                              \
-  X(const unsigned char*, GetString, (unsigned name))                                                             \
-  X(void, LinkProgram, (unsigned program))                                                                        \
-  X(void, MemoryBarrier, (unsigned barriers))                                                                     \
-  X(void, MultiDrawArraysIndirect, (unsigned mode, const void* commands, int count, int stride))                  \
-  X(void, PixelStorei, (unsigned name, int value))                                                                \
-  X(void, ReadBuffer, (unsigned source))                                                                          \
-  X(void, ReadPixels, (int x, int y, int width, int height, unsigned format, unsigned type, void* data))          \
-  X(void, RenderbufferStorage, (unsigned target, unsigned internalFormat, int width, int height))                 \
-  X(void, ShaderSource, (unsigned shader, int count, const char* const* texts, const int* lengths))               \
-  X(void, Uniform1i, (int location, int x))                                                                       \
-  X(void, Uniform1ui, (int location, unsigned x))                                                                 \
-  X(void, Uniform2f, (int location, float x, float y))                                                            \
-  X(void, Uniform2i, (int location, int x, int y))                                                                \
-  X(void, Uniform4f, (int location, float x, float y, float z, float w))                                          \
-  X(void, UseProgram, (unsigned program))                                                                         \
-  X(void, VertexAttribDivisor, (unsigned index, unsigned divisor))                                                \
-  X(void, VertexAttribIPointer, (unsigned index, int size, unsigned type, int stride, const void* offset))        \
+#define STRATA_GL_FUNCTIONS(X)                                                                                   \
+  X(void, ActiveTexture, (unsigned unit))                                                                        \
+  X(void, AttachShader, (unsigned program, unsigned shader))                                                     \
+  X(void, BindBuffer, (unsigned target, unsigned buffer))                                                        \
+  X(void, BindBufferBase, (unsigned target, unsigned index, unsigned buffer))                                    \
+  X(void, BindFramebuffer, (unsigned target, unsigned framebuffer))                                              \
+  X(void, BindRenderbuffer, (unsigned target, unsigned renderbuffer))                                            \
+  X(void, BindVertexArray, (unsigned array))                                                                     \
+  X(void, BufferData, (unsigned target, std::ptrdiff_t size, const void* data, unsigned usage))                  \
+  X(void, BufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, const void* data))        \
+  X(unsigned, CheckFramebufferStatus, (unsigned target))                                                         \
+  X(void, ClearBufferData,                                                                                       \
+    (unsigned target, unsigned internalFormat, unsigned format, unsigned type, const void* data))                \
+  X(void, ClearBufferfv, (unsigned buffer, int index, const float* value))                                       \
+  X(void, ClearBufferuiv, (unsigned buffer, int index, const unsigned* value))                                   \
+  X(void, ClipControl, (unsigned origin, unsigned depth))                                                        \
+  X(void, CompileShader, (unsigned shader))                                                                      \
+  X(unsigned, CreateProgram, ())                                                                                 \
+  X(unsigned, CreateShader, (unsigned type))                                                                     \
+  X(void, DeleteBuffers, (int count, const unsigned* buffers))                                                   \
+  X(void, DeleteFramebuffers, (int count, const unsigned* framebuffers))                                         \
+  X(void, DeleteProgram, (unsigned program))                                                                     \
+  X(void, DeleteRenderbuffers, (int count, const unsigned* renderbuffers))                                       \
+  X(void, DeleteShader, (unsigned shader))                                                                       \
+  X(void, DeleteVertexArrays, (int count, const unsigned* arrays))                                               \
+  X(void, DepthFunc, (unsigned function))                                                                        \
+  X(void, Disable, (unsigned capability))                                                                        \
+  X(void, DispatchCompute, (unsigned x, unsigned y, unsigned z))                                                 \
+  X(void, Enable, (unsigned capability))                                                                         \
+  X(void, EnableVertexAttribArray, (unsigned index))                                                             \
+  X(void, Finish, ())                                                                                            \
+  X(void, FramebufferRenderbuffer, (unsigned target, unsigned attachment, unsigned kind, unsigned renderbuffer)) \
+  X(void, GenBuffers, (int count, unsigned* buffers))                                                            \
+  X(void, GenFramebuffers, (int count, unsigned* framebuffers))                                                  \
+  X(void, GenRenderbuffers, (int count, unsigned* renderbuffers))                                                \
+  X(void, GenVertexArrays, (int count, unsigned* arrays))                                                        \
+  X(void, GetBufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, void* data))           \
+  X(unsigned, GetError, ())                                                                                      \
+  X(void, GetInteger64v, (unsigned name, long long* value))                                                      \
+  X(void, GetIntegerv, (unsigned name, int* value))                                                              \
+  X(void, GetProgramInfoLog, (unsigned program, int capacity, int* length, char* text))                          \
+  X(void, GetProgramiv, (unsigned program, unsigned name, int* value))                                           \
+  X(void, GetShaderInfoLog, (unsigned shader, int capacity, int* length, char* text))                            \
+  X(void, GetShaderiv, (unsigned shader, unsigned name, int* value))                                             \
+  X(const unsigned char*, GetString, (unsigned name))                                                            \
+  X(void, LinkProgram, (unsigned program))                                                                       \
+  X(void, MemoryBarrier, (unsigned barriers))                                                                    \
+  X(void, MultiDrawArraysIndirect, (unsigned mode, const void* commands, int count, int stride))                 \
+  X(void, PixelStorei, (unsigned name, int value))                                                               \
+  X(void, ReadBuffer, (unsigned source))                                                                         \
+  X(void, ReadPixels, (int x, int y, int width, int height, unsigned format, unsigned type, void* data))         \
+  X(void, RenderbufferStorage, (unsigned target, unsigned internalFormat, int width, int height))                \
+  X(void, ShaderSource, (unsigned shader, int count, const char* const* texts, const int* lengths))              \
+  X(void, Uniform1i, (int location, int x))                                                                      \
+  X(void, Uniform1ui, (int location, unsigned x))                                                                \
+  X(void, Uniform2f, (int location, float x, float y))                                                           \
+  X(void, Uniform2i, (int location, int x, int y))                                                               \
+  X(void, Uniform4f, (int location, float x, float y, float z, float w))                                         \
+  X(void, UseProgram, (unsigned program))                                                                        \
+  X(void, VertexAttribDivisor, (unsigned index, unsigned divisor))                                               \
+  X(void, VertexAttribIPointer, (unsigned index, int size, unsigned type, int stride, const void* offset))       \
   X(void, Viewport, (int x, int y, int width, int height))
 
 /// The functions of one context. A table of its own for each, because EGL and OSMesa give different addresses.

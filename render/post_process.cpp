@@ -37,7 +37,7 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
   const auto width = static_cast<std::size_t>(buffer.width);
   const auto height = static_cast<std::size_t>(buffer.height);
   std::vector<PackedPixel> rows(buffer.pixels.size(), kEmptyPixel);
-  std::vector<std::uint8_t> sizeOf(rows.size(), 1);   // of the point in `rows`
+  std::vector<std::uint8_t> sizeOf(rows.size(), 1);  // of the point in `rows`
   std::atomic<int> largest{1};
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     int largestHere = 1;
@@ -72,8 +72,7 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
         const std::uint8_t* size = &sizeOf[row * width];
         // Reaches down by size / 2 and up by (size - 1) / 2.
         const std::size_t least = row <= y ? 2 * (y - row) : 2 * (row - y) + 1;
-        for (std::size_t x = 0; x < width; ++x)
-          to[x] = size[x] >= least ? std::min(to[x], from[x]) : to[x];
+        for (std::size_t x = 0; x < width; ++x) to[x] = size[x] >= least ? std::min(to[x], from[x]) : to[x];
       }
     }
   });

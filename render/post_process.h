@@ -32,8 +32,8 @@ class PointSizes {
 };
 
 /// Lets every point cover a square of pixels: a pixel takes the nearest of the points that cover it.
-/// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be done
-/// one after the other, since a nearer point is never the smaller one.
+/// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be
+/// done one after the other, since a nearer point is never the smaller one.
 void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool);
 
 /// Eye-dome lighting (Boucheny 2009): darkens a pixel by how far its eight neighbours stand in front of it,

@@ -35,10 +35,14 @@ Backend parseBackend(std::string_view name) {
 std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
                                              std::unique_ptr<GlContext> context) {
   switch (backend) {
-    case Backend::automatic: return createFastest(options, std::move(context));
-    case Backend::cpu: return createCpuRasterizer(options);
-    case Backend::compute32: return createCompute32Rasterizer(std::move(context), options);
-    case Backend::points: return createPointsRasterizer(std::move(context), options);
+    case Backend::automatic:
+      return createFastest(options, std::move(context));
+    case Backend::cpu:
+      return createCpuRasterizer(options);
+    case Backend::compute32:
+      return createCompute32Rasterizer(std::move(context), options);
+    case Backend::points:
+      return createPointsRasterizer(std::move(context), options);
   }
   throw Error("backend: unknown value");
 }

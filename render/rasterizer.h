@@ -12,13 +12,13 @@ namespace strata {
 
 /// What one draw did and what it cost.
 struct DrawStats {
-  std::uint64_t pointsDrawn = 0;      ///< sent through projection, after culling
+  std::uint64_t pointsDrawn = 0;  ///< sent through projection, after culling
   std::uint32_t batchesDrawn = 0;
-  std::uint32_t batchesCulled = 0;    ///< outside the frustum
+  std::uint32_t batchesCulled = 0;         ///< outside the frustum
   std::uint32_t batchesAt[3] = {0, 0, 0};  ///< by precision: 10, 20, 30 bits
-  std::uint32_t nodesNotUploaded = 0; ///< left out of this frame: over the upload budget or out of GPU memory
+  std::uint32_t nodesNotUploaded = 0;      ///< left out of this frame: over the upload budget or out of GPU memory
   std::uint64_t bytesUploaded = 0;
-  std::uint64_t gpuBytes = 0;         ///< held by node data on the GPU; 0 for cpu
+  std::uint64_t gpuBytes = 0;  ///< held by node data on the GPU; 0 for cpu
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
 };
 

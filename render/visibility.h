@@ -11,9 +11,7 @@ namespace strata {
 /// (Schütz 2022, Listing 1).
 using PackedPixel = std::uint64_t;
 
-constexpr PackedPixel packPixel(std::uint32_t depthBits, std::uint32_t id) {
-  return PackedPixel{depthBits} << 32 | id;
-}
+constexpr PackedPixel packPixel(std::uint32_t depthBits, std::uint32_t id) { return PackedPixel{depthBits} << 32 | id; }
 inline constexpr PackedPixel kEmptyPixel = packPixel(0x7f800000u, Frame::kNoPoint);  // +inf, no point
 
 constexpr std::uint32_t pixelId(PackedPixel pixel) { return static_cast<std::uint32_t>(pixel); }

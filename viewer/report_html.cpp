@@ -192,8 +192,7 @@ std::string reportHtml(const BenchReport& report) {
   std::string html =
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>" +
-      htmlEscape(report.storeName) + " – Strata</title><style>" + kStyle +
-      "</style></head><body><main>\n<header><h1>" +
+      htmlEscape(report.storeName) + " – Strata</title><style>" + kStyle + "</style></head><body><main>\n<header><h1>" +
       htmlEscape(report.storeName) + "</h1><p class=\"soft\">" + htmlEscape(report.program) + ", " +
       htmlEscape(report.when) + ". " + htmlEscape(report.measures.backend) + " on " +
       htmlEscape(report.measures.device) + ".</p></header>\n";

@@ -25,8 +25,8 @@ constexpr std::size_t kLeastInBlock = 6;  // points; fewer are an edge or the ha
 constexpr float kLayerDepth = 1.06f;      // what lies this much deeper is seen through the gaps of the front
 constexpr double kClosedShare = 65.0;     // per cent of the picture's blocks that should look closed
 constexpr double kOverlap = 2.0;          // points do not stand on a grid
-constexpr int kLargestPoint = 2;  // pixels, for what is far away; near points have their size in metres
-constexpr double kBlockedCost = 3.0;  // against coverage, when views are compared
+constexpr int kLargestPoint = 2;          // pixels, for what is far away; near points have their size in metres
+constexpr double kBlockedCost = 3.0;      // against coverage, when views are compared
 constexpr double kLayeringGain = 0.3;
 
 double elevationFor(const Scene& scene) {

@@ -43,8 +43,8 @@ std::vector<Still> chooseStills(const Scene& scene, const Store& store, int widt
 
 /// Distance between neighbouring points of the nearest surface.
 struct FrontSpacing {
-  double pixels = 0.0;   ///< in all but the sparsest third of the picture
-  double metres = 0.0;   ///< in the nearer half of the picture, all but the sparsest third of it
+  double pixels = 0.0;  ///< in all but the sparsest third of the picture
+  double metres = 0.0;  ///< in the nearer half of the picture, all but the sparsest third of it
 };
 /// `frame` is drawn from `view` with points of one pixel.
 FrontSpacing frontSpacing(const Frame& frame, const View& view);

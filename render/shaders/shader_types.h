@@ -29,10 +29,10 @@ using ivec4 = glm::ivec4;
 
 /// One batch as a shader draws it; see batch_plan.h for the arithmetic.
 struct BatchRecord {
-  vec4 x;         // xyz: step a cell, w: base
+  vec4 x;  // xyz: step a cell, w: base
   vec4 y;
   vec4 depth;
-  ivec4 eyeCell;  // w: planes to read, 1 to 3
+  ivec4 eyeCell;     // w: planes to read, 1 to 3
   uint firstWord;    // of plane 0 in the page
   uint planeStride;  // words from one plane to the next
   uint pointCount;

@@ -74,7 +74,8 @@ TEST(Moments, MergedPartsEqualTheWhole) {
   }
   first.add(second);
   EXPECT_DOUBLE_EQ(first.count, whole.count);
-  for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(first.scatter[k], whole.scatter[k], 1e-6 * (1.0 + std::abs(whole.scatter[k])));
+  for (std::size_t k = 0; k < 6; ++k)
+    EXPECT_NEAR(first.scatter[k], whole.scatter[k], 1e-6 * (1.0 + std::abs(whole.scatter[k])));
 }
 
 TEST(Contour, OnePointAndCopiesOfItHaveAnEmptyBox) {

@@ -39,7 +39,7 @@ NodePoints randomPoints(std::mt19937_64& random, const StoreInfo& info, std::siz
     for (std::size_t i = 0; i < count; ++i) axis.push_back(static_cast<std::int64_t>(start + random() % width));
   }
   points.attributes.resize(count * info.layout.stride());
-  const int style = static_cast<int>(random() % 3);   // constant, small values, noise
+  const int style = static_cast<int>(random() % 3);  // constant, small values, noise
   for (std::byte& b : points.attributes)
     b = static_cast<std::byte>(style == 0 ? 7 : style == 1 ? random() % 4 : random() & 255);
   return points;

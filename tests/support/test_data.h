@@ -39,8 +39,8 @@ class TempFolder {
 }  // namespace strata::test
 
 /// Skips the test where the real scans are absent.
-#define STRATA_REQUIRE_DATA()                                                              \
-  do {                                                                                     \
-    if (strata::test::dataFolder().empty())                                                \
+#define STRATA_REQUIRE_DATA()                                                                \
+  do {                                                                                       \
+    if (strata::test::dataFolder().empty())                                                  \
       GTEST_SKIP() << "the real scans (../shared/data) are not there; set STRATA_TEST_DATA"; \
   } while (false)

@@ -55,7 +55,8 @@ TEST(Dilate, GivesPointsOfGrowingSizeTheSameAsDrawingEachAlone) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> depth(0.4f, 20.0f);
   for (PackedPixel& pixel : before.pixels)
-    if (random() % 40 == 0) pixel = packPixel(std::bit_cast<std::uint32_t>(depth(random)), static_cast<std::uint32_t>(random() % 1000));
+    if (random() % 40 == 0)
+      pixel = packPixel(std::bit_cast<std::uint32_t>(depth(random)), static_cast<std::uint32_t>(random() % 1000));
   VisibilityBuffer expected{view.width, view.height, std::vector<PackedPixel>(before.pixels.size(), kEmptyPixel)};
   for (int row = 0; row < view.height; ++row)
     for (int column = 0; column < view.width; ++column) {
