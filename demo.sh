@@ -78,11 +78,9 @@ grep -qxF -- "$name.strata" "$made" 2>/dev/null || printf '%s\n' "$name.strata" 
 rm -f -- "$out"/{overview,close,detail}.png "$out/report.html"
 say "converting ${scans[*]}"
 "$bin/strata-convert" "${scans[@]}" -o "$store" ${force[@]+"${force[@]}"}
-say "taking three pictures"
-"$bin/strata-bench" "$store" --stills -o "$out"
-say "flying an orbit around it"
+say "taking three pictures and flying an orbit around it"
 "$bin/strata-bench" --make-path orbit "$store" >"$out/path.json"
-"$bin/strata-bench" "$store" --path "$out/path.json" -o "$out" --screenshot-every 60
+"$bin/strata-bench" "$store" --stills --path "$out/path.json" -o "$out" --screenshot-every 60 --point-size 2 --edl
 
 say "done:"
 for file in overview.png close.png detail.png report.html; do
