@@ -157,7 +157,7 @@ class Packer {
   }
   void copyRecord(const std::byte* from, const SourceMapping& mapping, std::byte* to) const {
     if (mapping.sameLayout) {
-      std::memcpy(to, from, format_.attributeBytes);
+      std::copy_n(from, format_.attributeBytes, to);
       return;
     }
     std::memset(to, 0, format_.attributeBytes);

@@ -23,7 +23,8 @@ NodePoints gather(const BuildFrame& frame, std::span<const std::byte> points, co
     std::int64_t grid[3];
     frame.format.getPosition(record, grid);
     for (std::size_t axis = 0; axis < 3; ++axis) out.grid[axis][i] = grid[axis];
-    std::memcpy(out.attributes.data() + i * attributeBytes, record + frame.format.positionBytes(), attributeBytes);
+    std::copy_n(record + frame.format.positionBytes(), attributeBytes,
+                out.attributes.begin() + static_cast<std::ptrdiff_t>(i * attributeBytes));
   }
   return out;
 }

@@ -25,9 +25,11 @@ class PayloadReader {
     if (expected != record.headBytes) fail("payload head has the wrong size");
     batches_.resize(head.batchCount);
     planes_.resize(head.planeCount);
-    std::memcpy(batches_.data(), payload.data() + sizeof head, batches_.size() * sizeof(PayloadBatch));
-    std::memcpy(planes_.data(), payload.data() + sizeof head + batches_.size() * sizeof(PayloadBatch),
-                planes_.size() * sizeof(PayloadPlane));
+    if (!batches_.empty())
+      std::memcpy(batches_.data(), payload.data() + sizeof head, batches_.size() * sizeof(PayloadBatch));
+    if (!planes_.empty())
+      std::memcpy(planes_.data(), payload.data() + sizeof head + batches_.size() * sizeof(PayloadBatch),
+                  planes_.size() * sizeof(PayloadPlane));
     checkBatches(head.pointCount);
   }
 

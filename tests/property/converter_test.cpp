@@ -43,7 +43,7 @@ std::vector<std::string> sortedPoints(const Store& store) {
     for (std::size_t i = 0; i < points.count(); ++i) {
       std::string one(24 + stride, '\0');
       for (std::size_t axis = 0; axis < 3; ++axis) std::memcpy(one.data() + 8 * axis, &points.grid[axis][i], 8);
-      std::memcpy(one.data() + 24, points.attributes.data() + i * stride, stride);
+      std::copy_n(reinterpret_cast<const char*>(points.attributes.data()) + i * stride, stride, one.data() + 24);
       all.push_back(std::move(one));
     }
   }
@@ -67,7 +67,7 @@ std::vector<std::string> sortedSourcePoints(const std::string& input, const Stor
             const std::int64_t grid = std::llround(world[axis] / info.grid.scale[axis]);
             std::memcpy(one.data() + 8 * axis, &grid, 8);
           }
-          std::memcpy(one.data() + 24, block.attributes.data() + i * stride, stride);
+          std::copy_n(reinterpret_cast<const char*>(block.attributes.data()) + i * stride, stride, one.data() + 24);
           all.push_back(std::move(one));
         }
     }
