@@ -1,15 +1,13 @@
-#include <fcntl.h>
 #include <malloc.h>
-#include <sys/file.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <thread>
 
+#include "converter/build_folder.h"
 #include "converter/chunk_builder.h"
 #include "converter/distribute.h"
 #include "converter/merge.h"
@@ -34,56 +32,6 @@ std::uint64_t chunkPointLimit(std::uint64_t memoryBytes, const PackedFormat& for
   const std::uint64_t perPoint = 2 * format.stride() + 2 * 12 + 16;
   return (memoryBytes - kProgramBytes) / 2 / kChunksAtOnce / perPoint;
 }
-
-/// The folder that the store is built in, beside its final place. Removed unless it becomes the store.
-class BuildFolder {
- public:
-  explicit BuildFolder(const std::string& output) : output_(output), path_(output + ".building") {
-    std::error_code failure;
-    fs::create_directories(path_, failure);
-    if (failure) throw Error(path_, "creating: " + failure.message());
-    lock_ = ::open((path_ + "/lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock_ < 0) throw posixError(path_, "creating", errno);
-    if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
-      ::close(lock_);
-      throw Error(path_, "another conversion is writing this store");
-    }
-  }
-  ~BuildFolder() {
-    std::error_code ignored;
-    if (!published_) fs::remove_all(path_, ignored);
-    ::close(lock_);
-  }
-  BuildFolder(const BuildFolder&) = delete;
-  BuildFolder& operator=(const BuildFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-
-  /// Gives the folder its final name; an older store there is replaced.
-  void publish() {
-    std::error_code failure;
-    fs::remove(path_ + "/lock", failure);
-    syncFolder(path_);
-    const std::string replaced = output_ + ".replaced";
-    fs::remove_all(replaced, failure);
-    if (fs::exists(output_)) {
-      fs::rename(output_, replaced, failure);
-      if (failure) throw Error(output_, "replacing: " + failure.message());
-    }
-    fs::rename(path_, output_, failure);
-    if (failure) throw Error(output_, "renaming: " + failure.message());
-    published_ = true;
-    const fs::path parent = fs::absolute(output_).parent_path();
-    syncFolder(parent.string());
-    fs::remove_all(replaced, failure);
-  }
-
- private:
-  const std::string output_;
-  const std::string path_;
-  int lock_ = -1;
-  bool published_ = false;
-};
 
 class StageClock {
  public:
@@ -120,6 +68,8 @@ Distribution readInputs(const Sources& sources, const ConvertOptions& options, S
     const double extent = glm::max(all.bounds.size().x, glm::max(all.bounds.size().y, all.bounds.size().z));
     const bool farTooLarge = all.points > 0 && extent + 1.0 <= std::ldexp(1.0, frame.cubeBits - 2);
     if (attempt > 0 || (!all.outsideCube && !farTooLarge)) return all;
+    all = {};
+    spill.clear();
     for (std::size_t i = 0; i < sources.size(); ++i) measured[i] = measureSource(*sources[i], options.threads, control);
   }
 }
@@ -212,16 +162,6 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
   return tops;
 }
 
-void checkOptions(const ConvertOptions& options) {
-  if (fs::exists(options.output) && !options.force) throw Error(options.output, "exists already; --force replaces it");
-  if (options.force && fs::exists(options.output) && !fs::exists(options.output + "/" + kInfoFile))
-    throw Error(options.output, "is not a store, so --force does not replace it");
-  const fs::path parent = fs::absolute(options.output).parent_path();
-  if (!fs::is_directory(parent)) throw Error(parent.string(), "is no folder that the store could be made in");
-  if (!options.tempFolder.empty() && !fs::is_directory(options.tempFolder))
-    throw Error(options.tempFolder, "is no folder for temporary points");
-}
-
 }  // namespace
 
 ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control) {
@@ -231,7 +171,9 @@ ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control
   while (options.output.size() > 1 && options.output.back() == '/') options.output.pop_back();
   if (options.threads <= 0) options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   options.source.memoryBytes = options.memoryBytes;
-  checkOptions(options);
+  checkOutput(options.output, options.force);
+  if (!options.tempFolder.empty() && !fs::is_directory(options.tempFolder))
+    throw Error(options.tempFolder, "is no folder for temporary points");
 
   ConvertReport report;
   StageClock clock(report);
@@ -243,7 +185,7 @@ ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control
   }
   clock.end("survey");
 
-  BuildFolder folder(options.output);
+  BuildFolder folder(options.output, options.force);
   Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);
   Survey surveyed;
   Distribution all = readInputs(sources, options, surveyed, spill, control);

@@ -10,8 +10,10 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <iomanip>
 #include <limits>
 #include <mutex>
+#include <sstream>
 
 #include "core/error.h"
 #include "core/morton.h"
@@ -176,6 +178,15 @@ int firstLevel(std::uint64_t points, std::uint64_t limit, int cubeBits) {
   return std::min({static_cast<int>(std::ceil(std::log2(ratio) * 0.5)) + 2, kMostFirstLevel, cubeBits});
 }
 
+/// A point of a slab lives about three times at once: as read, packed, sorted.
+std::size_t slabPointBytes(const PointLayout& layout) { return 3 * (layout.stride() + sizeof(glm::dvec3)); }
+
+/// Threads whose slabs fit into a quarter of the memory.
+int slabsAtOnce(const ConvertOptions& options, std::size_t slabBytes) {
+  return static_cast<int>(
+      std::clamp<std::uint64_t>(options.memoryBytes / 4 / slabBytes, 1, static_cast<std::uint64_t>(options.threads)));
+}
+
 /// Reads everything once.
 void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const Survey& frame, const Packer& packer,
                  std::size_t slabPoints, BucketSet& buckets, const ConvertOptions& options,
@@ -188,7 +199,7 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
     for (std::size_t p = 0; p < sources[s]->partCount(); ++p) parts.push_back({s, p});
   std::vector<std::atomic<std::uint64_t>> kept(sources.size()), skipped(sources.size());
   std::atomic<std::uint64_t> done{0};
-  std::atomic<bool> outside{false};
+  std::atomic<bool> outside{false}, failed{false};
   std::atomic<std::size_t> nextPart{0};
   tbb::enumerable_thread_specific<ThreadTally> tallies([&] { return ThreadTally(frame.layout); });
 
@@ -198,7 +209,7 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
     const auto reader = sources[part.source]->openPart(part.part);
     PointBlock block;
     std::vector<std::byte> packed;
-    for (std::uint64_t slab = 0; !outside && reader->read(block, slabPoints); ++slab) {
+    for (std::uint64_t slab = 0; !outside && !failed && reader->read(block, slabPoints); ++slab) {
       control.checkStop();
       bool offCube = false;
       const std::uint64_t left =
@@ -211,10 +222,18 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
     }
   };
   // Parts are taken in order, so that one slow file at the end does not wait behind a single thread.
-  tbb::task_arena arena(options.threads);
+  const int workers = slabsAtOnce(options, slabPoints * slabPointBytes(frame.layout));
+  tbb::task_arena arena(workers);
   arena.execute([&] {
-    tbb::parallel_for(0, options.threads, [&](int) {
-      for (std::size_t index = nextPart++; index < parts.size(); index = nextPart++) readPart(index);
+    tbb::parallel_for(0, workers, [&](int) {
+      for (std::size_t index = nextPart++; !failed && index < parts.size(); index = nextPart++) {
+        try {
+          readPart(index);
+        } catch (...) {
+          failed = true;  // the others need not read on
+          throw;
+        }
+      }
     });
   });
 
@@ -242,15 +261,20 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
 }
 
 /// Splits a bucket until each part is small enough; appends the parts in Morton order.
-void splitBucket(Bucket bucket, const PackedFormat& format, int cubeBits, std::uint64_t limit, std::size_t slabPoints,
-                 Spill& spill, const ConvertControl& control, std::vector<Bucket>& out) {
+void splitBucket(Bucket bucket, const PackedFormat& format, const Box& rootCube, int cubeBits, std::uint64_t limit,
+                 std::size_t slabPoints, Spill& spill, const ConvertControl& control, std::vector<Bucket>& out) {
   const int room = std::min(NodeKey::kDeepestLevel, cubeBits) - bucket.cell.level();
   if (bucket.points <= limit || room <= 0) {
-    if (bucket.points > kDeepestCellLimits * limit)
-      throw Error("node " + bucket.cell.text() +
-                  ": more points than --memory can hold lie in one cell of the deepest level, found " +
-                  std::to_string(bucket.points) + " (expected at most " + std::to_string(kDeepestCellLimits * limit) +
-                  ")");
+    if (bucket.points > kDeepestCellLimits * limit) {
+      const Box cell = nodeCube(bucket.cell, rootCube);
+      std::ostringstream place;
+      place << std::setprecision(10) << "around " << cell.centre().x << " " << cell.centre().y << " "
+            << cell.centre().z;
+      throw Error(place.str(), "more points lie in a cell of " + std::to_string(cell.size().x) +
+                                   " m, the smallest there is, than --memory can hold, found " +
+                                   std::to_string(bucket.points) + " (expected at most " +
+                                   std::to_string(kDeepestCellLimits * limit) + ")");
+    }
     out.push_back(std::move(bucket));
     return;
   }
@@ -265,7 +289,7 @@ void splitBucket(Bucket bucket, const PackedFormat& format, int cubeBits, std::u
     slab.clear();
   }
   for (Bucket& part : parts.take())
-    splitBucket(std::move(part), format, cubeBits, limit, slabPoints, spill, control, out);
+    splitBucket(std::move(part), format, rootCube, cubeBits, limit, slabPoints, spill, control, out);
 }
 
 /// The largest cells whose points stay within the limit, from the top down. `first` to `last` lie inside `cell`.
@@ -301,9 +325,8 @@ Distribution distribute(const std::vector<std::unique_ptr<PointSource>>& sources
                         const PackedFormat& format, std::uint64_t bucketLimit, const ConvertOptions& options,
                         Spill& spill, const ConvertControl& control) {
   Distribution out;
-  // A slab lives about three times at once: as read, packed, sorted.
-  const std::size_t slabBytes = options.memoryBytes / 16 / static_cast<std::size_t>(options.threads) / 3;
-  const std::size_t slabPoints = std::clamp(slabBytes / (format.stride() + 24), kLeastSlab, kMostSlab);
+  const std::size_t slabBytes = options.memoryBytes / 16 / static_cast<std::size_t>(options.threads);
+  const std::size_t slabPoints = std::clamp(slabBytes / slabPointBytes(frame.layout), kLeastSlab, kMostSlab);
   const CellGrid grid(NodeKey{}, firstLevel(frame.claimedPoints, bucketLimit, frame.cubeBits), frame.cubeBits);
   BucketSet buckets(grid, format, spill);
   readSources(sources, frame, Packer(frame, format), slabPoints, buckets, options, control, out);
@@ -311,10 +334,12 @@ Distribution distribute(const std::vector<std::unique_ptr<PointSource>>& sources
 
   std::vector<Bucket> coarse = buckets.take();
   std::vector<std::vector<Bucket>> parts(coarse.size());
-  tbb::task_arena arena(options.threads);
+  const Box rootCube{frame.grid.offset, frame.grid.offset + frame.grid.scale * std::ldexp(1.0, frame.cubeBits)};
+  tbb::task_arena arena(slabsAtOnce(options, slabPoints * slabPointBytes(frame.layout)));
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, coarse.size(), [&](std::size_t i) {
-      splitBucket(std::move(coarse[i]), format, frame.cubeBits, bucketLimit, slabPoints, spill, control, parts[i]);
+      splitBucket(std::move(coarse[i]), format, rootCube, frame.cubeBits, bucketLimit, slabPoints, spill, control,
+                  parts[i]);
     });
   });
   std::vector<Bucket> fine;

@@ -53,6 +53,7 @@ int Spill::file() {
 
 Spill::Handle Spill::put(std::span<const std::byte> raw) {
   Handle handle;
+  if (raw.size() > LZ4_MAX_INPUT_SIZE) throw Error(folder_, "a block of temporary points is too large for LZ4");
   handle.rawBytes = static_cast<std::uint32_t>(raw.size());
   std::vector<std::byte> packed(static_cast<std::size_t>(LZ4_compressBound(static_cast<int>(raw.size()))));
   const int bytes =
@@ -78,6 +79,14 @@ Spill::Handle Spill::put(std::span<const std::byte> raw) {
   for (std::uint64_t peak = peakFileBytes_; held > peak && !peakFileBytes_.compare_exchange_weak(peak, held);) {
   }
   return handle;
+}
+
+void Spill::clear() {
+  if (descriptor_ >= 0 && ::ftruncate(descriptor_, 0) != 0)
+    throw posixError(folder_, "emptying temporary points", errno);
+  memoryBytes_ = 0;
+  fileBytes_ = 0;
+  fileEnd_ = 0;
 }
 
 void Spill::take(Handle& handle, std::vector<std::byte>& out) {

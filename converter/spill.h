@@ -31,6 +31,9 @@ class Spill {
   /// Appends the block's bytes to `out` and gives its room back. Throws Error when the disk fails.
   void take(Handle& handle, std::vector<std::byte>& out);
 
+  /// Forgets every block; none may be taken any more. No other call may run at the same time.
+  void clear();
+
   std::uint64_t peakFileBytes() const { return peakFileBytes_.load(); }
 
  private:

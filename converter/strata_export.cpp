@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -65,9 +66,16 @@ std::uint64_t countWanted(const Store& store, const Filter& filter, Box& bounds)
   return count;
 }
 
+/// In lower case.
+std::string extensionOf(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
 std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
                                          const Box& bounds) {
-  const std::string extension = std::filesystem::path(path).extension().string();
+  const std::string extension = extensionOf(path);
   if (extension == ".las" || extension == ".laz")
     return createLasWriter(path, info, points, bounds, extension == ".laz");
   return createPlyWriter(path, info, points);
@@ -92,13 +100,14 @@ int run(int argc, char** argv) {
     if (problem.get_exit_code() == 0) return app.exit(problem);
     throw UsageError(problem.what());
   }
-  const std::string extension = std::filesystem::path(output).extension().string();
+  const std::string extension = extensionOf(output);
   if (extension != ".las" && extension != ".laz" && extension != ".ply")
     throw UsageError(output, "unknown format, found '" + extension + "' (expected .las, .laz or .ply)");
   if (!box.empty()) {
     filter.box = Box{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     if (filter.box->empty()) throw UsageError("--box", "the first corner is not below the second");
   }
+  if (std::filesystem::is_directory(output)) throw Error(output, "is a folder");
   if (std::filesystem::exists(output) && !force) throw Error(output, "exists already; --force replaces it");
 
   const Store store(path);
@@ -106,8 +115,11 @@ int run(int argc, char** argv) {
   const std::uint64_t count = countWanted(store, filter, bounds);
   const std::unique_ptr<ScanWriter> writer = createWriter(output, store.info(), count, bounds);
   const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
-  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+  listenForStop();
+  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+    if (stopAsked()) throw Error(output, "stopped before it was complete");
     if (mayHoldWanted(nodes[i], store.info(), filter)) writer->write(wantedPoints(store, i, filter));
+  }
   writer->finish();
   std::printf("%s: %s points\n", output.c_str(), grouped(count).c_str());
   return 0;

@@ -88,6 +88,7 @@ int run(int argc, char** argv) {
     std::printf("%s\n", description.dump(-1, ' ', false, Json::error_handler_t::replace).c_str());
   else
     printText(store);
+  flushOutput();
   if (!report.problems.empty())
     throw Error(
         path, report.problems.front() +

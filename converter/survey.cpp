@@ -1,23 +1,19 @@
 #include "converter/survey.h"
 
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <glm/gtx/component_wise.hpp>
-#include <map>
-#include <mutex>
 
 #include "core/error.h"
 
 namespace strata {
 namespace {
 
-constexpr int kMostCubeBits = 52;  // integers that a double holds exactly
-constexpr std::size_t kMeasureBlock = 65536;
+constexpr int kMostCubeBits = 52;        // integers that a double holds exactly
+constexpr double kCoarsestShare = 1e-7;  // of the typical extent: steps grow no further for the sake of far outliers
 constexpr double kGridTolerance = 1e-4;  // of a step: what decimal scale factors lose in binary
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
@@ -60,19 +56,36 @@ void evenOut(AxisGrid (&axes)[3]) {
   for (AxisGrid& axis : axes) axis.step /= std::max(1.0, std::round(axis.step / finest));
 }
 
-/// The step of a source on this axis: its own, or for floats what their typical magnitude can resolve.
+/// The largest power of ten that is not above the value.
+double powerOfTenBelow(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
+
+std::string shortNumber(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+/// The size of the last digit that most points' floats can tell: far outliers, whose floats are coarser, do not count.
+double typicalStep(const SourceInfo& info, const MeasuredSource& measured) {
+  const double ulp = measured.typicalMagnitude * std::ldexp(1.0, info.float64 ? -52 : -23);
+  if (!info.float64) return powerOfTenBelow(0.5 * ulp);
+  return powerOfTenBelow(std::max({ulp, measured.typicalExtent * 1e-9, 1e-9}));
+}
+
+/// The step of a source: its own, or for floats what most of its points can resolve.
 glm::dvec3 sourceStep(const SourceInfo& info, const std::optional<MeasuredSource>& measured) {
   if (info.gridExact) return info.step;
   glm::dvec3 step = info.step;
-  if (measured && measured->typicalMagnitude > 0.0) {
-    const double ulp = measured->typicalMagnitude * std::ldexp(1.0, -23);
-    const double typical = std::pow(10.0, std::floor(std::log10(ulp * 0.5)));
-    for (int axis = 0; axis < 3; ++axis) step[axis] = step[axis] > 0.0 ? std::min(step[axis], typical) : typical;
-  }
-  const double extent = measured ? glm::compMax(measured->bounds.size()) : glm::compMax(info.bounds.size());
+  if (measured && measured->typicalMagnitude > 0.0)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double typical = typicalStep(info, *measured);
+      step[axis] = step[axis] > 0.0 ? std::min(step[axis], typical) : typical;
+    }
+  const double extent = glm::compMax(measured ? measured->bounds.size() : info.bounds.size());
+  const double coarsest = measured ? measured->typicalExtent * kCoarsestShare : 0.0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(step[axis] > 0.0)) step[axis] = extent > 0.0 ? std::pow(10.0, std::floor(std::log10(extent * 1e-9))) : 1e-6;
-    while (extent / step[axis] > std::ldexp(1.0, kMostCubeBits - 5)) step[axis] *= 10.0;
+    if (!(step[axis] > 0.0)) step[axis] = extent > 0.0 ? powerOfTenBelow(extent * 1e-9) : 1e-6;
+    while (extent / step[axis] > std::ldexp(1.0, kMostCubeBits - 1) && step[axis] < coarsest) step[axis] *= 10.0;
   }
   return step;
 }
@@ -116,15 +129,16 @@ SourceMapping mapLayout(const PointLayout& from, const PointLayout& to) {
   return mapping;
 }
 
-void placeCube(const Box& bounds, const AxisGrid (&axes)[3], Survey& out) {
+/// `widest` names the source to blame where the points do not fit one grid.
+void placeCube(const std::string& widest, const Box& bounds, const AxisGrid (&axes)[3], Survey& out) {
   std::uint64_t steps = 1;
   for (int axis = 0; axis < 3; ++axis) {
     const AxisGrid& grid = axes[axis];
     const double first = std::floor((bounds.min[axis] - grid.anchor) / grid.step + kGridTolerance);
     const double last = std::ceil((bounds.max[axis] - grid.anchor) / grid.step - kGridTolerance);
-    if (last - first >= std::ldexp(1.0, kMostCubeBits))
-      throw Error("the scan spans " + std::to_string(bounds.size()[axis]) + " m on a grid of " +
-                  std::to_string(grid.step) + " m: more than 2^52 steps");
+    if (!(last - first < std::ldexp(1.0, kMostCubeBits)))
+      throw Error(widest, "points lie too far apart for one grid, found " + shortNumber(last - first) + " steps of " +
+                              shortNumber(grid.step) + " m (expected less than 2^52); take out those that lie far off");
     out.grid.scale[axis] = grid.step;
     out.grid.offset[axis] = grid.anchor + first * grid.step;
     out.grid.exact = out.grid.exact && grid.exact;
@@ -188,52 +202,22 @@ bool headerBoundsUsable(const SourceInfo& info) {
   return true;
 }
 
-MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control) {
-  MeasuredSource result;
-  std::map<int, std::uint64_t> magnitudes;
-  std::mutex mutex;
-  tbb::task_arena arena(threads);
-  arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, source.partCount(), [&](std::size_t part) {
-      PointBlock block;
-      Box bounds;
-      std::map<int, std::uint64_t> exponents;
-      const auto reader = source.openPart(part);
-      while (reader->read(block, kMeasureBlock)) {
-        control.checkStop();
-        for (const glm::dvec3& p : block.positions) {
-          if (!finite(p)) continue;
-          bounds.add(p);
-          ++exponents[std::ilogb(std::max(glm::compMax(glm::abs(p)), 1e-300))];
-        }
-      }
-      const std::lock_guard lock(mutex);
-      result.bounds.add(bounds);
-      for (const auto& [exponent, count] : exponents) magnitudes[exponent] += count;
-    });
-  });
-  std::uint64_t total = 0, before = 0;
-  for (const auto& [exponent, count] : magnitudes) total += count;
-  for (const auto& [exponent, count] : magnitudes) {
-    before += count;
-    if (2 * before >= total) {
-      result.typicalMagnitude = std::ldexp(1.0, exponent);
-      break;
-    }
-  }
-  return result;
-}
-
 Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
               const std::vector<std::optional<MeasuredSource>>& measured) {
   Survey out;
   Box bounds;
   std::vector<glm::dvec3> steps;
+  std::string widest = sources.front()->info().path;
+  double widestExtent = -1.0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const SourceInfo& info = sources[i]->info();
     out.claimedPoints += info.pointCount;
     const Box box = sourceBounds(*sources[i], measured[i]);
     if (!box.empty()) bounds.add(box);
+    if (!box.empty() && !(glm::compMax(box.size()) <= widestExtent)) {
+      widestExtent = glm::compMax(box.size());
+      widest = info.path;
+    }
     steps.push_back(sourceStep(info, measured[i]));
     out.grid.exact = out.grid.exact && info.gridExact;
     if (out.crs.empty()) out.crs = info.crs;
@@ -243,7 +227,7 @@ Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
   AxisGrid axes[3];
   for (int axis = 0; axis < 3; ++axis) axes[axis] = commonGrid(sources, steps, axis);
   evenOut(axes);
-  placeCube(bounds, axes, out);
+  placeCube(widest, bounds, axes, out);
   out.layout = unitedLayout(sources);
   for (const auto& source : sources) {
     SourceMapping mapping = mapLayout(source->info().layout, out.layout);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "converter/measure_source.h"
 #include "converter/options.h"
 #include "io/point_source.h"
 #include "io/store.h"
@@ -31,15 +32,6 @@ struct Survey {
   std::uint64_t claimedPoints = 0;
   std::vector<SourceMapping> mappings;  ///< one a source
 };
-
-/// Bounds and typical magnitude of a source whose header cannot tell.
-struct MeasuredSource {
-  Box bounds;                   ///< of finite points, relative to the source's origin
-  double typicalMagnitude = 0;  ///< median over the points of the largest |coordinate|, as a power of two
-};
-
-/// Reads the points of a source once for their extent; in parallel over its parts.
-MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control);
 
 /// 0 where the first points of a source keep colours of 0 to 255 in their 16-bit fields, 8 where they use all 16
 /// bits, nothing where all are black or there are none.

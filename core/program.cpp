@@ -1,22 +1,44 @@
 #include "core/program.h"
 
+#include <csignal>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <new>
 
 #include "core/error.h"
 
 namespace strata {
+namespace {
+std::atomic<bool> stopFlag{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+}  // namespace
 
 int reportFailure(const std::exception& failure) {
   std::string line = failure.what();
+  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr) line = "memory: there is not enough of it";
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fflush(stdout);
   std::fprintf(stderr, "error: %s\n", line.c_str());
   return dynamic_cast<const UsageError*>(&failure) != nullptr ? 2 : 1;
 }
+
+void flushOutput() {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw posixError("stdout", "writing", errno);
+}
+
+void listenForStop() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stopFlag = true; };
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // without SA_RESTART: a blocked open() returns
+  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+}
+
+const std::atomic<bool>& stopAsked() { return stopFlag; }
 
 std::uint64_t parseBytes(const std::string& option, const std::string& text) {
   double value = 0.0;

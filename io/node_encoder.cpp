@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstring>
 
+#include "core/error.h"
 #include "io/bit_packing.h"
 #include "io/node_codec.h"
 #include "io/node_payload.h"
@@ -16,6 +17,7 @@ namespace {
 class PayloadWriter {
  public:
   void addPlane(std::uint16_t id, std::span<const std::byte> raw, std::size_t elementBytes) {
+    if (raw.size() > LZ4_MAX_INPUT_SIZE) throw Error("points.bin", "a node has too many points for one plane");
     PayloadPlane plane{};
     plane.id = id;
     plane.rawBytes = static_cast<std::uint32_t>(raw.size());

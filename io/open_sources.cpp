@@ -73,6 +73,9 @@ const UnreadFormat* findUnread(const fs::path& path) {
 
 /// The first bytes of the file, at most four. Throws where it is missing or empty.
 std::string firstBytes(const std::string& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::status(path, failure);
+  if (fs::exists(status) && !fs::is_regular_file(status)) throw Error(path, "is no regular file");
   const std::unique_ptr<ByteSource> bytes = openFile(path);
   if (bytes->size() == 0) throw Error(path, "the file is empty, found 0 bytes");
   std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(bytes->size(), 4)), '\0');

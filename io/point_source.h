@@ -53,6 +53,7 @@ struct SourceInfo {
                                  ///< the last digit that carries information (text: of its decimals; float32:
                                  ///< about one ulp of the largest coordinate); 0 = unknown
   bool gridExact = false;        ///< every position is origin + integer * step
+  bool float64 = false;          ///< coordinates are 64-bit floats on no grid (else, off a grid, they are 32-bit)
   PointLayout layout;
   std::string crs;  ///< WKT, or "EPSG:n", or empty
   std::uint64_t fileBytes = 0;

@@ -173,6 +173,7 @@ void describePositions(const FieldMap& map, const RecordSample& sample, bool com
         break;
       case ScalarType::f64:
         step[axis] = float64Step(sample.bounds);
+        info.float64 = true;
         break;
       default:
         step[axis] = 1.0;

@@ -87,6 +87,7 @@ class TextTableSource final : public PointSource {
       decimals = std::max(decimals, survey.columns[c].decimals);
     }
     info_.gridExact = decimals <= kMostDecimals;
+    info_.float64 = !info_.gridExact;
     info_.step = info_.gridExact ? glm::dvec3(1.0 / std::pow(10.0, decimals))
                                  : fillSteps(glm::dvec3(float64Step(survey.bounds)));
   }

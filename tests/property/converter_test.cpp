@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "converter/build_folder.h"
 #include "converter/options.h"
 #include "core/error.h"
 #include "io/node_codec.h"
@@ -167,6 +168,69 @@ TEST(Converter, FilesThatWriteColoursInDifferentWaysAreAllDrawnRight) {
   ASSERT_EQ(drawn.pointCount(), 200u);
   for (const std::uint32_t colour : drawn.colour) EXPECT_EQ(colour, 200u | 100u << 8 | 50u << 16 | 255u << 24);
   EXPECT_TRUE(verifyStore(store).problems.empty());
+}
+
+/// A binary PLY of doubles: 20,000 points in 10 m and one more.
+void writeDoubles(const fs::path& path, const glm::dvec3& outlier) {
+  std::ofstream ply(path, std::ios::binary);
+  ply << "ply\nformat binary_little_endian 1.0\nelement vertex 20001\nproperty double x\nproperty double y\n"
+         "property double z\nend_header\n";
+  for (int i = 0; i < 20000; ++i) {
+    const glm::dvec3 p(std::fmod(i * 0.7548776662466927, 1.0) * 10.0, std::fmod(i * 0.5698402909980532, 1.0) * 10.0,
+                       std::fmod(i * 0.1234567890123456, 1.0));
+    ply.write(reinterpret_cast<const char*>(&p), sizeof p);
+  }
+  ply.write(reinterpret_cast<const char*>(&outlier), sizeof outlier);
+}
+
+TEST(Converter, APointTwoThousandKilometresOffMakesNobodyElsesDoublesCoarser) {
+  const test::TempFolder folder;
+  for (const double far : {5.0, 2e6}) {
+    const std::string name = far > 10.0 ? "far" : "near";
+    writeDoubles(folder / (name + ".ply"), {far, 5.0, 0.5});
+    convertTo(folder / (name + ".strata"), {(folder / (name + ".ply")).string()});
+  }
+  const Store near((folder / "near.strata").string()), far((folder / "far.strata").string());
+  EXPECT_EQ(near.info().grid.scale, far.info().grid.scale);
+}
+
+TEST(Converter, APointBeyondEveryGridIsRefusedInsteadOfMovingTheOthers) {
+  const test::TempFolder folder;
+  writeDoubles(folder / "a.ply", {1e17, 0.0, 0.0});
+  EXPECT_THROW(convertTo(folder / "a.strata", {(folder / "a.ply").string()}), Error);
+  EXPECT_FALSE(fs::exists(folder / "a.strata"));
+}
+
+TEST(BuildFolder, DoesNotReplaceWhatAppearedUnderItsFinalName) {
+  const test::TempFolder folder;
+  const std::string output = (folder / "a.strata").string();
+  {
+    BuildFolder building(output, false);
+    fs::create_directory(output);
+    std::ofstream(output + "/scan.las") << "precious";
+    EXPECT_THROW(building.publish(), Error);
+  }
+  EXPECT_TRUE(fs::exists(output + "/scan.las"));
+  EXPECT_FALSE(fs::exists(output + ".building"));
+}
+
+TEST(BuildFolder, ForceReplacesAStoreButNoFolderWithAnythingElseInIt) {
+  const test::TempFolder folder;
+  const fs::path output = folder / "a.strata";
+  convertTo(output, {"synthetic:plane?points=10"});
+  EXPECT_NO_THROW(checkOutput(output.string(), true));
+  EXPECT_THROW(checkOutput(output.string(), false), Error);
+  std::ofstream(output / "notes.txt") << "precious";
+  EXPECT_THROW(checkOutput(output.string(), true), Error);
+  EXPECT_TRUE(fs::exists(output / "notes.txt"));
+}
+
+TEST(BuildFolder, DoesNotTakeOverAFolderThatNoConversionMade) {
+  const test::TempFolder folder;
+  fs::create_directory(folder / "a.strata.building");
+  std::ofstream(folder / "a.strata.building" / "notes.txt") << "precious";
+  EXPECT_THROW(BuildFolder((folder / "a.strata").string(), false), Error);
+  EXPECT_TRUE(fs::exists(folder / "a.strata.building" / "notes.txt"));
 }
 
 }  // namespace

@@ -1,0 +1,109 @@
+#include "converter/build_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+
+#include "core/error.h"
+#include "io/output_file.h"
+#include "io/store_files.h"
+
+namespace strata {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLockFile = "lock";
+constexpr std::array<std::string_view, 3> kStoreFiles{kInfoFile, kHierarchyFile, kPointsFile};
+
+/// The name of an entry that a store, or a store being built, does not have; empty where there is none.
+std::string strangeEntry(const std::string& folder) {
+  std::error_code failure;
+  for (auto entry = fs::directory_iterator(folder, failure); !failure && entry != fs::directory_iterator();
+       entry.increment(failure)) {
+    const std::string name = entry->path().filename().string();
+    if (name != kLockFile && std::find(kStoreFiles.begin(), kStoreFiles.end(), name) == kStoreFiles.end()) return name;
+  }
+  if (failure) throw Error(folder, "reading the folder: " + failure.message());
+  return {};
+}
+
+void removeStoreFolder(const std::string& folder) {
+  std::error_code ignored;
+  for (const std::string_view file : kStoreFiles) fs::remove(fs::path(folder) / file, ignored);
+  fs::remove(fs::path(folder) / kLockFile, ignored);
+  fs::remove(folder, ignored);  // fails, as it should, where anything else is in it
+}
+
+fs::path parentOf(const std::string& path) {
+  const fs::path parent = fs::path(path).parent_path();
+  return parent.empty() ? fs::path(".") : parent;
+}
+
+/// True where something, even a dangling link, has this name.
+bool isTaken(const std::string& path) {
+  std::error_code failure;
+  const fs::file_status status = fs::symlink_status(path, failure);
+  if (status.type() == fs::file_type::not_found) return false;
+  if (failure) throw Error(path, failure.message());
+  return true;
+}
+
+}  // namespace
+
+void checkOutput(const std::string& output, bool force) {
+  if (output.empty()) throw UsageError("--output", "found '' (expected NAME.strata)");
+  std::error_code failure;
+  const fs::path parent = parentOf(output);
+  if (!fs::is_directory(parent, failure)) throw Error(parent.string(), "is no folder that the store could be made in");
+  if (!isTaken(output)) return;
+  if (!force) throw Error(output, "exists already; --force replaces it");
+  if (!fs::is_directory(output, failure) || !fs::exists(output + "/" + kInfoFile, failure))
+    throw Error(output, "is not a store, so --force does not replace it");
+  if (const std::string strange = strangeEntry(output); !strange.empty())
+    throw Error(output, "holds " + strange + ", which is no part of a store, so --force does not replace it");
+}
+
+BuildFolder::BuildFolder(const std::string& output, bool force)
+    : output_(output), path_(output + ".building"), force_(force) {
+  std::error_code failure;
+  fs::create_directory(path_, failure);
+  if (failure) throw Error(path_, "creating: " + failure.message());
+  if (const std::string strange = strangeEntry(path_); !strange.empty())
+    throw Error(path_, "holds " + strange + ", which no conversion left there");
+  lock_ = ::open((path_ + "/" + kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0) throw posixError(path_, "creating", errno);
+  if (::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock_);
+    throw Error(path_, "another conversion is writing this store");
+  }
+}
+
+BuildFolder::~BuildFolder() {
+  removeStoreFolder(path_);  // after publish(): the store that was replaced, or nothing
+  ::close(lock_);
+}
+
+void BuildFolder::publish() {
+  syncFolder(path_);
+  if (isTaken(output_)) {
+    checkOutput(output_, force_);
+    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, output_.c_str(), RENAME_EXCHANGE) != 0)
+      throw posixError(output_, "replacing", errno);
+  } else if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, output_.c_str(), RENAME_NOREPLACE) != 0) {
+    // Some file systems know plain renames only; those do not replace a folder with anything in it either.
+    if (errno != EINVAL || ::rename(path_.c_str(), output_.c_str()) != 0) throw posixError(output_, "renaming", errno);
+  }
+  std::error_code ignored;
+  fs::remove(output_ + "/" + kLockFile, ignored);
+  syncFolder(output_);
+  syncFolder(parentOf(output_).string());
+}
+
+}  // namespace strata

@@ -1,0 +1,32 @@
+#pragma once
+#include <string>
+
+namespace strata {
+
+/// Throws Error when a store cannot be made at `output`: something is there that may not be replaced, or no folder
+/// holds it. With `force` a store is replaced, but only a folder that holds the three files of a store and nothing
+/// else.
+void checkOutput(const std::string& output, bool force);
+
+/// The folder that a store is built in, `OUTPUT.building`, locked against other conversions. What an interrupted
+/// conversion left there is taken over. Removed by the destructor unless it has become the store.
+class BuildFolder {
+ public:
+  BuildFolder(const std::string& output, bool force);
+  ~BuildFolder();
+  BuildFolder(const BuildFolder&) = delete;
+  BuildFolder& operator=(const BuildFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  /// Gives the folder its final name in one step. Throws, and leaves what is there alone, when something that may not
+  /// be replaced has appeared under that name.
+  void publish();
+
+ private:
+  const std::string output_;
+  const std::string path_;
+  const bool force_;
+  int lock_ = -1;
+};
+
+}  // namespace strata
