@@ -34,8 +34,21 @@ GLFWwindow* openWindow(const std::string& title, int width, int height, bool vis
   return nullptr;
 }
 
-bool pressed(int key) { return ImGui::IsKeyPressed(key, false); }
-int held(int key) { return ImGui::IsKeyDown(key) ? 1 : 0; }
+// Dear ImGui names keys itself since 1.87 and by GLFW's numbers before.
+#if IMGUI_VERSION_NUM >= 18700
+ImGuiKey keyOf(int key) {
+  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
+  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return static_cast<ImGuiKey>(ImGuiKey_0 + (key - GLFW_KEY_0));
+  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
+    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + (key - GLFW_KEY_KP_0));
+  return ImGuiKey_None;
+}
+#else
+int keyOf(int key) { return key; }
+#endif
+
+bool pressed(int key) { return ImGui::IsKeyPressed(keyOf(key), false); }
+int held(int key) { return ImGui::IsKeyDown(keyOf(key)) ? 1 : 0; }
 
 void readKeys(WindowInput& input) {
   input.frameAll = pressed(GLFW_KEY_F);
