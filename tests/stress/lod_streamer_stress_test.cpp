@@ -79,7 +79,7 @@ TEST(StreamerStress, ViewsAndOptionsFromOtherThreads) {
     for (unsigned i = 0; i < 3; ++i)
       drivers.emplace_back([&streamer, i](std::stop_token stop) {
         std::mt19937 random(i);
-        while (!stop.stop_requested()) {
+        do {  // once at least: without a view there is nothing to complete
           streamer.setView(randomView(random));
           SelectionOptions options;
           options.pointsPerPixel = 0.25 * static_cast<double>(1 + random() % 8);
@@ -87,7 +87,7 @@ TEST(StreamerStress, ViewsAndOptionsFromOtherThreads) {
           streamer.stats();
           streamer.complete();
           std::this_thread::yield();
-        }
+        } while (!stop.stop_requested());
       });
     for (int frame = 0; frame < 1500; ++frame) draw(streamer.beginFrame());
   }
