@@ -23,6 +23,8 @@ while [ $# -gt 0 ]; do
   shift
 done
 
+# Without the set of real scans beside the project, those of a Debian package are tested.
+if [ ! -e "$strata_root/../shared/data/MANIFEST.tsv" ] && ! $build_only; then strata_packages+=(libcgal-demo); fi
 install_packages
 build_release all
 if $build_only; then
