@@ -237,7 +237,6 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
     });
   });
 
-  AttributeStats stats(frame.layout);
   ThreadTally total(frame.layout);
   for (const ThreadTally& t : tallies) {
     total.stats.add(t.stats);

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <nlohmann/json.hpp>
 
+#include "converter/command_line.h"
 #include "converter/options.h"
 #include "core/error.h"
 #include "core/program.h"
@@ -116,13 +117,7 @@ int run(int argc, char** argv) {
   app.add_flag("--resume", resume, "take up an interrupted conversion: what it left is cleared and done again");
   app.add_flag("--force", options.force, "replace an existing store");
   app.add_flag("--json", json, "print one JSON object as the last line");
-  app.set_version_flag("--version", STRATA_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    if (problem.get_exit_code() == 0) return app.exit(problem);
-    throw UsageError(problem.what());
-  }
+  if (!parseCommandLine(app, argc, argv)) return 0;
   options.memoryBytes = parseBytes("--memory", memory);
   if (options.memoryBytes < kLeastMemoryBytes)
     throw UsageError("--memory", "found " + memory + " (expected at least 512M)");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "converter/command_line.h"
 #include "core/error.h"
 #include "core/program.h"
 #include "io/node_codec.h"
@@ -93,13 +94,7 @@ int run(int argc, char** argv) {
   app.add_option("--level", filter.deepestLevel, "only nodes down to this level; 0 is the root")
       ->check(CLI::Range(0, NodeKey::kDeepestLevel));
   app.add_flag("--force", force, "replace an existing file");
-  app.set_version_flag("--version", STRATA_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    if (problem.get_exit_code() == 0) return app.exit(problem);
-    throw UsageError(problem.what());
-  }
+  if (!parseCommandLine(app, argc, argv)) return 0;
   const std::string extension = extensionOf(output);
   if (extension != ".las" && extension != ".laz" && extension != ".ply")
     throw UsageError(output, "unknown format, found '" + extension + "' (expected .las, .laz or .ply)");

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "converter/command_line.h"
 #include "core/error.h"
 #include "core/program.h"
 #include "io/store.h"
@@ -69,13 +70,7 @@ int run(int argc, char** argv) {
   app.add_option("STORE", path, "NAME.strata")->required();
   app.add_flag("--json", json, "print one JSON object as the last line");
   app.add_flag("--verify", verify, "read every byte and check it");
-  app.set_version_flag("--version", STRATA_VERSION);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& problem) {
-    if (problem.get_exit_code() == 0) return app.exit(problem);
-    throw UsageError(problem.what());
-  }
+  if (!parseCommandLine(app, argc, argv)) return 0;
   const Store store(path);
   Json description = describe(store);
   VerifyReport report;
