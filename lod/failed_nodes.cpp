@@ -33,6 +33,12 @@ std::uint64_t FailedNodes::failures() const {
   return failures_;
 }
 
+bool FailedNodes::outOfTries(std::uint32_t node) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = attempts_.find(node);
+  return found != attempts_.end() && found->second >= kMaxAttempts;
+}
+
 std::uint64_t FailedNodes::givenUp() const {
   const std::lock_guard lock(mutex_);
   return givenUp_;

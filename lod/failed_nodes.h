@@ -21,6 +21,8 @@ class FailedNodes {
   void copyIfNewer(std::unordered_map<std::uint32_t, int>& attempts, std::uint64_t& version) const;
 
   std::uint64_t failures() const;  ///< all failed tries
+  /// True when no further attempt is to be made.
+  bool outOfTries(std::uint32_t node) const;
   std::uint64_t givenUp() const;   ///< nodes out of tries
 
  private:

@@ -198,8 +198,8 @@ void Streamer::loaderLoop(std::stop_token stop) {
 bool Streamer::loadOne(NodeLoader& loader, const LoadRequest& request, std::stop_token stop,
                        std::unique_ptr<NodeData>& buffer) {
   const NodeRecord& record = store_->hierarchy().nodes[request.node];
-  if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision)) {
-    queue_.finish(request.node);  // came between the LOD pass's look into the cache and its new queue
+  if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision) || failed_.outOfTries(request.node)) {
+    queue_.finish(request.node);  // came, or failed for good, between the LOD pass's look and its new queue
     return true;
   }
   const double reach = static_cast<double>(index_.reach[request.node]);
