@@ -1,4 +1,5 @@
 #include <malloc.h>
+#include <sys/resource.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -32,18 +33,41 @@ std::uint64_t chunkPointLimit(std::uint64_t memoryBytes, const PackedFormat& for
   return (memoryBytes - kProgramBytes) / 2 / kChunksAtOnce / perPoint;
 }
 
+/// CPU time of the process so far, all threads.
+double cpuSeconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// Times one stage after the other.
 class StageClock {
  public:
-  explicit StageClock(ConvertReport& report) : report_(report) {}
-  void end(const char* stage) {
+  StageClock(ConvertReport& report, const ConvertControl& control) : report_(report), control_(control) {}
+  void begin(const char* stage) {
+    end();
+    stage_ = stage;
+    control_.progress({stage, 0, 0});
+  }
+  void end() {
     const auto now = std::chrono::steady_clock::now();
-    report_.stages.push_back({stage, std::chrono::duration<double>(now - begin_).count()});
+    const double cpu = cpuSeconds();
+    if (stage_ != nullptr)
+      report_.stages.push_back({stage_, std::chrono::duration<double>(now - begin_).count(), cpu - cpuBegin_});
+    stage_ = nullptr;
     begin_ = now;
+    cpuBegin_ = cpu;
   }
 
  private:
   ConvertReport& report_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  const ConvertControl& control_;
+  const char* stage_ = nullptr;
+  std::chrono::steady_clock::time_point begin_;
+  double cpuBegin_ = 0.0;
 };
 
 using Sources = std::vector<std::unique_ptr<PointSource>>;
@@ -52,13 +76,18 @@ PackedFormat packedFormat(const Survey& frame) { return {frame.cubeBits > 32, fr
 
 /// Reads the inputs into buckets. Where headers cannot be believed their points are read once more for their extent.
 Distribution readInputs(const Sources& sources, const ConvertOptions& options, Survey& frame, Spill& spill,
-                        const ConvertControl& control) {
+                        StageClock& clock, const ConvertControl& control) {
   std::vector<std::optional<MeasuredSource>> measured(sources.size());
+  bool measuring = false;
   for (std::size_t i = 0; i < sources.size(); ++i)
-    if (!headerBoundsUsable(sources[i]->info()) && sources[i]->info().pointCount > 0)
+    if (!headerBoundsUsable(sources[i]->info()) && sources[i]->info().pointCount > 0) {
+      if (!measuring) clock.begin(stage::kMeasure);
+      measuring = true;
       measured[i] = measureSource(*sources[i], options.threads, control);
-    else if (sources[i]->info().pointCount == 0)
+    } else if (sources[i]->info().pointCount == 0) {
       measured[i] = MeasuredSource{};
+    }
+  clock.begin(stage::kDistribute);
   for (int attempt = 0;; ++attempt) {
     frame = survey(sources, measured);
     const PackedFormat format = packedFormat(frame);
@@ -155,17 +184,64 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
                 tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Work>& work) {
                   sink.write(std::move(work->built.nodes));
                   tops.push_back({work->cell, spill.put(work->built.topPoints), std::move(work->built.topChildren)});
-                  control.progress({"building", done += work->count, frame.info.points});
+                  control.progress({stage::kBuild, done += work->count, frame.info.points});
                 }));
   });
   return tops;
 }
 
-}  // namespace
+void countLevels(const Hierarchy& hierarchy, ConvertReport& report) {
+  for (const NodeRecord& node : hierarchy.nodes) {
+    const auto level = static_cast<std::size_t>(NodeKey{node.key}.level());
+    report.nodesByLevel.resize(std::max(report.nodesByLevel.size(), level + 1));
+    report.pointsByLevel.resize(report.nodesByLevel.size());
+    ++report.nodesByLevel[level];
+    report.pointsByLevel[level] += node.pointCount;
+  }
+}
 
-ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control) {
-  // Freed blocks of points go back to the system at once: the cap is on resident memory.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+/// Builds the store of sources that are open; `clock` has begun to time the survey.
+void convertOpen(const Sources& sources, const ConvertOptions& options, const ConvertControl& control,
+                 StageClock& clock, ConvertReport& report) {
+  for (const auto& source : sources) {
+    report.inputBytes += source->info().fileBytes;
+    if (source->info().pointCount == 0 && sources.size() == 1) throw Error(source->info().path, "has no points");
+    if (source->info().pointCount == 0) logWarning(source->info().path + ": has no points");
+  }
+
+  BuildFolder folder(options.output, options.force);
+  Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);
+  Survey surveyed;
+  Distribution all = readInputs(sources, options, surveyed, spill, clock, control);
+  checkCounts(sources, options, all);
+
+  clock.begin(stage::kBuild);
+  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed)};
+  NodeSink sink(folder.path());
+  std::vector<ChunkTop> tops = buildChunks(frame, all.buckets, options, spill, sink, control);
+  clock.begin(stage::kMerge);
+  mergeChunks(frame, std::move(tops), spill, sink, control);
+
+  clock.begin(stage::kWrite);
+  const Hierarchy hierarchy = sink.finish();
+  StoreInfo info = frame.info;
+  info.nodes = hierarchy.nodes.size();
+  info.levels = NodeKey{hierarchy.nodes.back().key}.level() + 1;
+  writeStoreFiles(folder.path(), info, hierarchy, sink.bytes());
+  folder.publish();
+  clock.end();
+
+  report.points = info.points;
+  report.nodes = info.nodes;
+  report.skipped = info.skipped;
+  countLevels(hierarchy, report);
+  report.tempPeakBytes = spill.peakFileBytes();
+  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
+    report.outputBytes += fs::file_size(options.output + "/" + file);
+}
+
+/// What was asked, with everything said that had a default; refuses what cannot be written to.
+ConvertOptions completed(const ConvertOptions& asked) {
   ConvertOptions options = asked;
   while (options.output.size() > 1 && options.output.back() == '/') options.output.pop_back();
   if (options.threads <= 0) options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -173,45 +249,28 @@ ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control
   checkOutput(options.output, options.force);
   if (!options.tempFolder.empty() && !fs::is_directory(options.tempFolder))
     throw Error(options.tempFolder, "is no folder for temporary points");
+  // Freed blocks of points go back to the system at once: the cap is on resident memory.
+  ::mallopt(M_MMAP_THRESHOLD, 1 << 20);
+  return options;
+}
 
+}  // namespace
+
+ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control) {
+  const ConvertOptions options = completed(asked);
   ConvertReport report;
-  StageClock clock(report);
-  const Sources sources = openSources(options.inputs, options.source);
-  for (const auto& source : sources) {
-    report.inputBytes += source->info().fileBytes;
-    if (source->info().pointCount == 0 && sources.size() == 1) throw Error(source->info().path, "has no points");
-    if (source->info().pointCount == 0) logWarning(source->info().path + ": has no points");
-  }
-  clock.end("survey");
+  StageClock clock(report, control);
+  clock.begin(stage::kSurvey);
+  convertOpen(openSources(options.inputs, options.source), options, control, clock, report);
+  return report;
+}
 
-  BuildFolder folder(options.output, options.force);
-  Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);
-  Survey surveyed;
-  Distribution all = readInputs(sources, options, surveyed, spill, control);
-  checkCounts(sources, options, all);
-  clock.end("distribute");
-
-  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed)};
-  NodeSink sink(folder.path());
-  std::vector<ChunkTop> tops = buildChunks(frame, all.buckets, options, spill, sink, control);
-  clock.end("build");
-  mergeChunks(frame, std::move(tops), spill, sink, control);
-  clock.end("merge");
-
-  const Hierarchy hierarchy = sink.finish();
-  StoreInfo info = frame.info;
-  info.nodes = hierarchy.nodes.size();
-  info.levels = NodeKey{hierarchy.nodes.back().key}.level() + 1;
-  writeStoreFiles(folder.path(), info, hierarchy, sink.bytes());
-  folder.publish();
-  clock.end("write");
-
-  report.points = info.points;
-  report.nodes = info.nodes;
-  report.skipped = info.skipped;
-  report.tempPeakBytes = spill.peakFileBytes();
-  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
-    report.outputBytes += fs::file_size(options.output + "/" + file);
+ConvertReport convert(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& asked,
+                      const ConvertControl& control) {
+  ConvertReport report;
+  StageClock clock(report, control);
+  clock.begin(stage::kSurvey);
+  convertOpen(sources, completed(asked), control, clock, report);
   return report;
 }
 

@@ -218,7 +218,7 @@ void readSources(const std::vector<std::unique_ptr<PointSource>>& sources, const
       skipped[part.source] += left;
       kept[part.source] += block.count() - left;
       buckets.add(packed, static_cast<std::uint64_t>(index) << 24 | slab);
-      control.progress({"reading", done += block.count(), frame.claimedPoints});
+      control.progress({stage::kDistribute, done += block.count(), frame.claimedPoints});
     }
   };
   // Parts are taken in order, so that one slow file at the end does not wait behind a single thread.

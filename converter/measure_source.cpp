@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/gtx/component_wise.hpp>
 #include <map>
@@ -38,6 +39,7 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
   std::map<int, std::uint64_t> magnitudes;
   std::vector<glm::dvec3> sample;
   std::mutex mutex;
+  std::atomic<std::uint64_t> done{0};
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, source.partCount(), [&](std::size_t part) {
@@ -55,6 +57,7 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
           if (seen++ % kSampleEvery == 0) sampleHere.push_back(p);
           ++exponents[std::ilogb(std::max(glm::compMax(glm::abs(p)), 1e-300))];
         }
+        control.progress({stage::kMeasure, done += block.count(), source.info().pointCount});
       }
       const std::lock_guard lock(mutex);
       result.bounds.add(bounds);

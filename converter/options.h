@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,21 @@ inline constexpr std::uint64_t kLeastMemoryBytes = std::uint64_t{512} << 20;
 inline constexpr std::uint32_t kLeastNodePoints = 1024;
 inline constexpr std::uint32_t kMostNodePoints = 1u << 20;
 
-/// How far a stage is; called from any thread, a few times a second at most.
+/// The stages of a conversion in their order (docs/architecture.md): what Progress and ConvertReport call them.
+/// "measure" is there only for scans whose headers do not say where the points are.
+namespace stage {
+inline constexpr const char* kSurvey = "survey";
+inline constexpr const char* kMeasure = "measure";
+inline constexpr const char* kDistribute = "distribute";
+inline constexpr const char* kBuild = "build";
+inline constexpr const char* kMerge = "merge";
+inline constexpr const char* kWrite = "write";
+}  // namespace stage
+
+/// How far a stage is; called from any thread, some hundred times a second at most.
 struct Progress {
-  const char* stage = "";
-  std::uint64_t done = 0, total = 0;  ///< points
+  const char* stage = "";             ///< of namespace stage
+  std::uint64_t done = 0, total = 0;  ///< points; both 0 where a stage cannot say
 };
 
 /// What a conversion reports (design section 10).
@@ -35,10 +47,11 @@ struct ConvertReport {
   std::uint64_t points = 0, nodes = 0, skipped = 0;
   std::uint64_t inputBytes = 0, outputBytes = 0, tempPeakBytes = 0;
   struct Stage {
-    std::string name;
-    double seconds = 0.0;
+    std::string name;  ///< of namespace stage
+    double seconds = 0.0, cpuSeconds = 0.0;
   };
   std::vector<Stage> stages;
+  std::vector<std::uint64_t> nodesByLevel, pointsByLevel;  ///< from the root down
 };
 
 /// What the stages share besides the options: progress and the wish to stop.
@@ -52,5 +65,8 @@ struct ConvertControl {
 /// Converts the inputs to a store. Nothing carries the final name before it is complete and durable; whatever was
 /// begun is removed when an Error is thrown. Same inputs and options give the same bytes for any number of threads.
 ConvertReport convert(const ConvertOptions& options, const ConvertControl& control);
+/// The same for scans that are open already; options.inputs is not looked at.
+ConvertReport convert(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& options,
+                      const ConvertControl& control);
 
 }  // namespace strata
