@@ -75,10 +75,10 @@ std::string extensionOf(const std::string& path) {
 }
 
 std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
-                                         const Box& bounds) {
+                                         const Box& bounds, std::optional<int> lasFormat) {
   const std::string extension = extensionOf(path);
   if (extension == ".las" || extension == ".laz")
-    return createLasWriter(path, info, points, bounds, extension == ".laz");
+    return createLasWriter(path, info, points, bounds, extension == ".laz", lasFormat);
   return createPlyWriter(path, info, points);
 }
 
@@ -88,16 +88,20 @@ int run(int argc, char** argv) {
   std::vector<double> box;
   Filter filter;
   bool force = false;
+  std::optional<int> lasFormat;
   app.add_option("STORE", path, "NAME.strata")->required();
   app.add_option("-o,--output", output, "OUT.las, OUT.laz or OUT.ply")->required();
   app.add_option("--box", box, "only points in x0 y0 z0 x1 y1 z1")->expected(6);
   app.add_option("--level", filter.deepestLevel, "only nodes down to this level; 0 is the root")
       ->check(CLI::Range(0, NodeKey::kDeepestLevel));
+  app.add_option("--format", lasFormat, "LAS point format; the source's own unless given")
+      ->check(CLI::IsMember({0, 1, 2, 3, 6, 7, 8}));
   app.add_flag("--force", force, "replace an existing file");
   if (!parseCommandLine(app, argc, argv)) return 0;
   const std::string extension = extensionOf(output);
   if (extension != ".las" && extension != ".laz" && extension != ".ply")
     throw UsageError(output, "unknown format, found '" + extension + "' (expected .las, .laz or .ply)");
+  if (lasFormat && extension == ".ply") throw UsageError("--format", "is for LAS and LAZ only");
   if (!box.empty()) {
     filter.box = Box{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
     if (filter.box->empty()) throw UsageError("--box", "the first corner is not below the second");
@@ -108,7 +112,7 @@ int run(int argc, char** argv) {
   const Store store(path);
   Box bounds;
   const std::uint64_t count = countWanted(store, filter, bounds);
-  const std::unique_ptr<ScanWriter> writer = createWriter(output, store.info(), count, bounds);
+  const std::unique_ptr<ScanWriter> writer = createWriter(output, store.info(), count, bounds, lasFormat);
   const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
   listenForStop();
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {

@@ -40,8 +40,11 @@ std::optional<std::vector<LasTarget::Copy>> copiesBetween(const PointLayout& fro
   return copies;
 }
 
-/// Formats 0 to 5 have 5 bits for the class and 3 for return numbers.
+/// Formats 0 to 5 have 5 bits for the class, 3 for return numbers and none for overlap and scanner channel.
 bool fitsBitFields(const StoreInfo& info, int pointFormat) {
+  constexpr double kSharedFlags = 7;  // bits 6 and 7 have a field too, but a maximum does not tell them from 3 to 5
+  if (pointFormat < 6 && (!info.las || info.las->pointFormat >= 6) && largest(info, attribute::kFlags) > kSharedFlags)
+    return false;
   return pointFormat >= 6 ||
          (largest(info, attribute::kClassification) <= 31 && largest(info, attribute::kReturnNumber) <= 7 &&
           largest(info, attribute::kNumberOfReturns) <= 7);
@@ -61,14 +64,20 @@ std::optional<LasTarget> sourceTarget(const StoreInfo& info, std::uint64_t point
   return target;
 }
 
-/// Formats 6 to 8 of LAS 1.4; what they have no field for becomes extra bytes.
-LasTarget modernTarget(const StoreInfo& info) {
-  LasTarget target;
+/// The smallest of formats 6 to 8 that has a field for the colours.
+int modernFormat(const StoreInfo& info) {
   const bool nir = info.layout.find(attribute::kNir) >= 0, rgb = info.layout.find(attribute::kRgb) >= 0;
-  target.format.pointFormat = nir ? 8 : rgb ? 7 : 6;
-  target.format.recordBytes = lasFormatBytes(target.format.pointFormat);
+  return nir ? 8 : rgb ? 7 : 6;
+}
+
+/// LAS 1.4 with records of the given format; what it has no field for becomes extra bytes.
+LasTarget modernTarget(const StoreInfo& info, int pointFormat) {
+  LasTarget target;
+  target.format.pointFormat = pointFormat;
+  target.format.recordBytes = lasFormatBytes(pointFormat);
   const PointLayout fields = lasLayout(target.format, {});
-  target.angleAt = fields.offset(static_cast<std::size_t>(fields.find(attribute::kScanAngle)));
+  const int angle = fields.find(attribute::kScanAngle);
+  if (angle >= 0) target.angleAt = fields.offset(static_cast<std::size_t>(angle));
   std::size_t end = fields.stride();
   std::vector<Attribute> extra;
   for (std::size_t i = 0; i < info.layout.attributes().size(); ++i) {
@@ -78,7 +87,7 @@ LasTarget modernTarget(const StoreInfo& info) {
     if (place >= 0 && sameType(attribute, fields.attributes()[static_cast<std::size_t>(place)])) {
       target.copies.push_back(
           {info.layout.offset(i), fields.offset(static_cast<std::size_t>(place)), attribute.bytes()});
-    } else if (attribute.name == attribute::kScanAngleRank && attribute.type == ScalarType::i8) {
+    } else if (angle >= 0 && attribute.name == attribute::kScanAngleRank && attribute.type == ScalarType::i8) {
       target.rankAt = static_cast<int>(info.layout.offset(i));
     } else {
       target.copies.push_back({info.layout.offset(i), end, attribute.bytes()});
@@ -155,9 +164,14 @@ void takeStoreGrid(const std::string& file, const StoreInfo& info, const Box& bo
 
 }  // namespace
 
-LasTarget chooseLasTarget(const std::string& file, const StoreInfo& info, std::uint64_t points, const Box& bounds) {
-  std::optional<LasTarget> source = sourceTarget(info, points);
-  LasTarget target = source ? std::move(*source) : modernTarget(info);
+LasTarget chooseLasTarget(const std::string& file, const StoreInfo& info, std::uint64_t points, const Box& bounds,
+                          std::optional<int> pointFormat) {
+  if (pointFormat && !fitsBitFields(info, *pointFormat))
+    throw Error(file, "the points do not fit point format " + std::to_string(*pointFormat) +
+                          ", found a class above 31, a return number above 7 or flags (expected formats 6 to 8)");
+  std::optional<LasTarget> source;
+  if (!pointFormat) source = sourceTarget(info, points);
+  LasTarget target = source ? std::move(*source) : modernTarget(info, pointFormat.value_or(modernFormat(info)));
   if (lasFormatBytes(target.format.pointFormat) > target.format.recordBytes)
     throw Error(file,
                 "the attributes are too large for a LAS record, found more than 65535 bytes (expected at most 65535)");

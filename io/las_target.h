@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,9 @@ struct LasTarget {
 };
 
 /// The source's own format, records and grid where the points fit them; else the smallest of formats 6, 7, 8.
-/// Throws Error, naming `file`, when the points fit no grid of 32-bit integers with the store's step.
-LasTarget chooseLasTarget(const std::string& file, const StoreInfo& info, std::uint64_t points, const Box& bounds);
+/// `pointFormat` (0 to 3 or 6 to 8) asks for that one. Throws Error, naming `file`, when the points fit no grid of
+/// 32-bit integers with the store's step, or the asked format's bit fields.
+LasTarget chooseLasTarget(const std::string& file, const StoreInfo& info, std::uint64_t points, const Box& bounds,
+                          std::optional<int> pointFormat = {});
 
 }  // namespace strata

@@ -50,9 +50,10 @@ class PartFile {
 
 class LasWriter final : public ScanWriter {
  public:
-  LasWriter(const std::string& path, const StoreInfo& info, std::uint64_t points, const Box& bounds, bool compress)
+  LasWriter(const std::string& path, const StoreInfo& info, std::uint64_t points, const Box& bounds, bool compress,
+            std::optional<int> pointFormat)
       : path_(path),
-        target_(chooseLasTarget(path, info, points, bounds)),
+        target_(chooseLasTarget(path, info, points, bounds, pointFormat)),
         stride_(info.layout.stride()),
         vlrs_(target_.meta.vlrs),
         file_(path) {
@@ -154,8 +155,8 @@ class LasWriter final : public ScanWriter {
 }  // namespace
 
 std::unique_ptr<ScanWriter> createLasWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
-                                            const Box& bounds, bool compress) {
-  return std::make_unique<LasWriter>(path, info, points, bounds, compress);
+                                            const Box& bounds, bool compress, std::optional<int> pointFormat) {
+  return std::make_unique<LasWriter>(path, info, points, bounds, compress, pointFormat);
 }
 
 }  // namespace strata

@@ -199,6 +199,44 @@ TEST(LasWriter, GivesOtherCloudsAFormatThatHoldsTheirAttributes) {
   }
 }
 
+TEST(LasWriter, WritesTheFormatThatIsAskedFor) {
+  const test::TempFolder folder;
+  StoreInfo info;
+  info.grid.scale = glm::dvec3(0.001);
+  info.layout = PointLayout({column(attribute::kRgb, ScalarType::u16, 3),
+                             column(attribute::kIntensity, ScalarType::u16), column(attribute::kNir, ScalarType::u16)});
+  info.ranges.resize(3);
+  NodePoints points;
+  for (auto& axis : points.grid) axis = {1, 2, 3};
+  for (int i = 0; i < 3 * static_cast<int>(info.layout.stride()); ++i)
+    points.attributes.push_back(static_cast<std::byte>(i));
+  const Box bounds{glm::dvec3(0.001), glm::dvec3(0.003)};
+  for (const int format : {0, 1, 2, 3, 6, 7, 8}) {
+    const std::string path = (folder / ("out" + std::to_string(format) + ".las")).string();
+    const auto writer = createLasWriter(path, info, 3, bounds, false, format);
+    writer->write(points);
+    writer->finish();
+    const auto source = openLas(path, {});
+    EXPECT_EQ(source->info().las->pointFormat, format);
+    PointBlock block;
+    ASSERT_TRUE(source->openPart(0)->read(block, 10));
+    const PointLayout& layout = source->info().layout;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Attribute& attribute = info.layout.attributes()[a];
+      int place = layout.find(attribute.name);
+      if (place < 0) place = layout.find("extra:" + attribute.name + (attribute.components > 1 ? "[0]" : ""));
+      ASSERT_GE(place, 0) << attribute.name << " in format " << format;
+      for (std::size_t i = 0; i < 3; ++i)
+        EXPECT_EQ(std::memcmp(block.attributes.data() + i * layout.stride() + layout.offset(std::size_t(place)),
+                              &points.attributes[i * info.layout.stride() + info.layout.offset(a)], attribute.bytes()),
+                  0);
+    }
+  }
+  info.layout = PointLayout({column(attribute::kClassification, ScalarType::u8)});
+  info.ranges = {{0, 32, 0, 32}};
+  EXPECT_THROW(createLasWriter((folder / "no.las").string(), info, 3, bounds, false, 2), Error);
+}
+
 TEST(LasWriter, LeavesTheSourcesFormatWhenValuesDoNotFitIt) {
   const test::TempFolder folder;
   RandomStore store = randomStore({3, 34}, 5, 3);
