@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 
 #include "core/error.h"
 #include "viewer/text_file.h"
@@ -12,6 +13,7 @@ namespace strata {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kLengthSamples = 256;  // between two keys, when the speed is constant
 constexpr double kMaxFps = 1000.0;
 constexpr double kMaxFrames = 1e6;  // keeps a mistyped time from running for weeks
 
@@ -23,8 +25,18 @@ glm::dvec3 tangent(const glm::dvec3& before, const glm::dvec3& here, const glm::
          (stepBefore + stepAfter);
 }
 
+using Run = std::span<const CameraKey>;  // keys between two cuts
+
+/// The run that key i belongs to; `first` is the run's first key.
+Run runOf(const std::vector<CameraKey>& keys, std::size_t i, std::size_t& first) {
+  for (first = i; first > 0 && !keys[first].cut;) --first;
+  std::size_t end = i + 1;
+  while (end < keys.size() && !keys[end].cut) ++end;
+  return Run(keys).subspan(first, end - first);
+}
+
 /// Tangent at key i of the curve through `member` of the keys. At an open end the curve is a parabola.
-glm::dvec3 tangentAt(const std::vector<CameraKey>& keys, std::size_t i, glm::dvec3 CameraKey::*member) {
+glm::dvec3 tangentAt(Run keys, std::size_t i, glm::dvec3 CameraKey::*member) {
   const std::size_t last = keys.size() - 1;
   const bool closed = keys.size() > 3 && keys[0].eye == keys[last].eye && keys[0].target == keys[last].target;
   const auto slope = [&](std::size_t k) {
@@ -74,6 +86,14 @@ glm::dvec3 vectorOf(const std::string& file, const Json& key, std::size_t index,
   return value;
 }
 
+bool flagOf(const std::string& file, const Json& key, std::size_t index, const char* name) {
+  const auto found = key.find(name);
+  if (found == key.end()) return false;
+  if (!found->is_boolean())
+    refuseKey(file, index, std::string(name) + ", found " + found->dump() + " (expected true or false)");
+  return found->get<bool>();
+}
+
 CameraKey parseKey(const std::string& file, const Json& json, std::size_t index) {
   if (!json.is_object()) refuseKey(file, index, "found " + json.dump() + " (expected an object)");
   const auto t = json.find("t");
@@ -83,6 +103,8 @@ CameraKey parseKey(const std::string& file, const Json& json, std::size_t index)
   key.eye = vectorOf(file, json, index, "eye");
   key.target = vectorOf(file, json, index, "target");
   if (json.contains("up")) key.up = vectorOf(file, json, index, "up");
+  key.cut = flagOf(file, json, index, "cut");
+  key.mark = flagOf(file, json, index, "mark");
   if (key.eye == key.target) refuseKey(file, index, "eye and target are the same point");
   if (glm::length(key.up) == 0.0) refuseKey(file, index, "up has no length");
   return key;
@@ -100,33 +122,100 @@ View viewAt(const CameraPath& path, double t, int width, int height) {
   view.height = height;
   const auto after =
       std::upper_bound(keys.begin(), keys.end(), t, [](double value, const CameraKey& key) { return value < key.t; });
-  if (after == keys.begin() || after == keys.end()) {
-    const CameraKey& still = after == keys.begin() ? keys.front() : keys.back();
+  if (after == keys.begin() || after == keys.end() || after->cut) {
+    const CameraKey& still = after == keys.begin() ? keys.front() : after[-1];
     view.eye = still.eye;
     view.target = still.target;
     view.up = still.up;
     return view;
   }
-  const std::size_t i = static_cast<std::size_t>(after - keys.begin()) - 1;
-  const double step = keys[i + 1].t - keys[i].t;
-  const double u = (t - keys[i].t) / step;
+  std::size_t first = 0;
+  const Run run = runOf(keys, static_cast<std::size_t>(after - keys.begin()) - 1, first);
+  const std::size_t i = static_cast<std::size_t>(after - keys.begin()) - 1 - first;
+  const double step = run[i + 1].t - run[i].t;
+  const double u = (t - run[i].t) / step;
   const auto curve = [&](glm::dvec3 CameraKey::*member) {
-    return hermite(keys[i].*member, tangentAt(keys, i, member), keys[i + 1].*member, tangentAt(keys, i + 1, member),
-                   step, u);
+    return hermite(run[i].*member, tangentAt(run, i, member), run[i + 1].*member, tangentAt(run, i + 1, member), step,
+                   u);
   };
   view.eye = curve(&CameraKey::eye);
   view.target = curve(&CameraKey::target);
-  view.up = glm::mix(keys[i].up, keys[i + 1].up, u);
+  view.up = glm::mix(run[i].up, run[i + 1].up, u);
   return view;
+}
+
+PathClock::PathClock(const CameraPath& path) {
+  if (path.speed == PathSpeed::keyed) return;
+  const std::vector<CameraKey>& keys = path.keys;
+  std::size_t first = 0;
+  for (std::size_t next = 0; next < keys.size(); next = first + runOf(keys, next, first).size()) {
+    const Run run = runOf(keys, next, first);
+    // Length flown since the run's first key, at kLengthSamples times between each two keys.
+    std::vector<double> times{run.front().t}, lengths{0.0};
+    glm::dvec3 before = run.front().eye;
+    for (std::size_t k = 0; k + 1 < run.size(); ++k)
+      for (int s = 1; s <= kLengthSamples; ++s) {
+        const bool atKey = s == kLengthSamples;
+        times.push_back(atKey ? run[k + 1].t : run[k].t + (run[k + 1].t - run[k].t) * s / kLengthSamples);
+        const glm::dvec3 eye = atKey ? run[k + 1].eye : viewAt(path, times.back(), 1, 1).eye;
+        lengths.push_back(lengths.back() + glm::distance(before, eye));
+        before = eye;
+      }
+    const double whole = lengths.back();
+    const double begin = run.front().t;
+    const double duration = run.back().t - begin;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      // Where the eye does not move at all the keys' own times stay.
+      pathTimes_.push_back(whole > 0.0 ? begin + duration * lengths[i] / whole : times[i]);
+      keyTimes_.push_back(times[i]);
+    }
+  }
+}
+
+double PathClock::lookUp(const std::vector<double>& from, const std::vector<double>& to, double value) {
+  if (from.empty() || value <= from.front() || value >= from.back()) return value;
+  const std::size_t after = static_cast<std::size_t>(std::upper_bound(from.begin(), from.end(), value) - from.begin());
+  const double step = from[after] - from[after - 1];
+  return step > 0.0 ? to[after - 1] + (to[after] - to[after - 1]) * (value - from[after - 1]) / step : to[after];
+}
+
+namespace {
+
+template <class Chosen>
+std::vector<int> framesOfKeys(const CameraPath& path, Chosen chosen, double (*round)(double)) {
+  const PathClock clock(path);
+  std::vector<int> frames;
+  for (const CameraKey& key : path.keys) {
+    if (!chosen(key)) continue;
+    const int frame = static_cast<int>(round((clock.pathTime(key.t) - path.keys.front().t) * path.fps - 1e-6));
+    frames.push_back(std::clamp(frame, 0, path.frames() - 1));
+  }
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+}  // namespace
+
+std::vector<int> markedFrames(const CameraPath& path) {
+  return framesOfKeys(
+      path, [](const CameraKey& key) { return key.mark; }, std::round);
+}
+
+std::vector<int> cutFrames(const CameraPath& path) {
+  return framesOfKeys(
+      path, [](const CameraKey& key) { return key.cut; }, std::ceil);
 }
 
 std::string cameraPathJson(const CameraPath& path) {
   const auto vector = [](const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}).dump(); };
   const double degrees = std::round(path.fovY / kDegree * 1e9) / 1e9;  // 60, not 59.99999999999999
-  std::string text = "{\"fps\":" + Json(path.fps).dump() + ",\"fov_y\":" + Json(degrees).dump() + ",\"keys\":[\n";
+  std::string text = "{\"fps\":" + Json(path.fps).dump() + ",\"fov_y\":" + Json(degrees).dump();
+  if (path.speed == PathSpeed::constant) text += ",\"speed\":\"constant\"";
+  text += ",\"keys\":[\n";
   for (const CameraKey& key : path.keys)
     text += std::string(&key == path.keys.data() ? " " : ",\n ") + "{\"t\":" + Json(key.t).dump() +
-            ",\"eye\":" + vector(key.eye) + ",\"target\":" + vector(key.target) + ",\"up\":" + vector(key.up) + "}";
+            ",\"eye\":" + vector(key.eye) + ",\"target\":" + vector(key.target) + ",\"up\":" + vector(key.up) +
+            (key.cut ? ",\"cut\":true" : "") + (key.mark ? ",\"mark\":true" : "") + "}";
   return text + "\n]}\n";
 }
 
@@ -141,6 +230,11 @@ CameraPath parseCameraPath(const std::string& file, const std::string& text) {
   if (json.contains("fov_y")) path.fovY = numberOf(file, json["fov_y"], "fov_y") * kDegree;
   if (!(path.fovY >= 1.0 * kDegree && path.fovY <= 170.0 * kDegree))
     throw Error(file, "fov_y, found " + json["fov_y"].dump() + " (expected 1 to 170 degrees)");
+  if (const auto speed = json.find("speed"); speed != json.end()) {
+    if (*speed != "keyed" && *speed != "constant")
+      throw Error(file, "speed, found " + speed->dump() + " (expected \"keyed\" or \"constant\")");
+    path.speed = *speed == "constant" ? PathSpeed::constant : PathSpeed::keyed;
+  }
   const auto keys = json.find("keys");
   if (keys == json.end() || !keys->is_array() || keys->empty())
     throw Error(file, "keys is missing or empty (expected a list of at least one key)");

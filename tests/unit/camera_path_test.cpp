@@ -154,5 +154,94 @@ TEST(CameraPath, NamesAFileThatIsNotThere) {
   }
 }
 
+TEST(CameraPath, ACutHoldsTheCameraStillAndThenJumps) {
+  CameraPath path = randomPath(11, 6);
+  path.keys[3].cut = true;
+  const CameraKey& before = path.keys[2];
+  const CameraKey& cut = path.keys[3];
+  for (const double u : {0.0, 0.25, 0.999}) {
+    const View view = viewAt(path, before.t + u * (cut.t - before.t), 1, 1);
+    EXPECT_EQ(view.eye, before.eye);
+    EXPECT_EQ(view.target, before.target);
+  }
+  EXPECT_LT(glm::distance(viewAt(path, cut.t, 1, 1).eye, cut.eye), 1e-8);
+}
+
+TEST(CameraPath, KeysBeyondACutDoNotBendTheCurveBeforeIt) {
+  CameraPath path = randomPath(12, 7);
+  path.keys[4].cut = true;
+  const View here = viewAt(path, 0.5 * (path.keys[2].t + path.keys[3].t), 1, 1);
+  for (std::size_t i = 4; i < path.keys.size(); ++i) path.keys[i].eye += glm::dvec3(500.0, -300.0, 70.0);
+  EXPECT_EQ(viewAt(path, 0.5 * (path.keys[2].t + path.keys[3].t), 1, 1).eye, here.eye);
+}
+
+TEST(PathClock, AtConstantSpeedEqualTimesAreEqualLengths) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    CameraPath path = randomPath(seed, 5);
+    path.speed = PathSpeed::constant;
+    const PathClock clock(path);
+    const auto eyeAt = [&](double t) { return viewAt(path, clock.keyTime(t), 1, 1).eye; };
+    // Lengths over a hundredth of the path, each in small steps: chords of a curve are shorter than the curve.
+    std::vector<double> lengths;
+    for (int i = 0; i < 100; ++i) {
+      double length = 0.0;
+      for (int s = 0; s < 50; ++s) {
+        const double t = path.keys.front().t + path.duration() * (i * 50 + s) / 5000.0;
+        length += glm::distance(eyeAt(t), eyeAt(t + path.duration() / 5000.0));
+      }
+      lengths.push_back(length);
+    }
+    const auto [least, most] = std::minmax_element(lengths.begin(), lengths.end());
+    EXPECT_LT(*most / *least, 1.02) << seed;
+  }
+}
+
+TEST(PathClock, GoesBothWaysAndIsTheSameForAKeyedPath) {
+  CameraPath path = randomPath(3, 6);
+  path.keys[3].cut = true;
+  EXPECT_EQ(PathClock(path).keyTime(path.keys[2].t), path.keys[2].t);
+  path.speed = PathSpeed::constant;
+  const PathClock clock(path);
+  for (int i = 0; i <= 100; ++i) {
+    // Between the key before the cut and the cut the camera stands still.
+    const double t = path.keys.front().t + path.duration() * i / 100.0;
+    if (t > path.keys[2].t && t < path.keys[3].t) continue;
+    EXPECT_NEAR(clock.pathTime(clock.keyTime(t)), t, 1e-6);
+  }
+  EXPECT_NEAR(clock.keyTime(path.keys[3].t), path.keys[3].t, 1e-9);
+}
+
+TEST(PathClock, ACameraThatOnlyTurnsKeepsTheKeysTimes) {
+  CameraPath path = randomPath(5, 4);
+  path.speed = PathSpeed::constant;
+  for (CameraKey& key : path.keys) key.eye = {1.0, 2.0, 3.0};
+  const double t = 0.3 * path.keys[0].t + 0.7 * path.keys[1].t;
+  EXPECT_NEAR(PathClock(path).keyTime(t), t, 1e-9);
+}
+
+TEST(CameraPath, KnowsTheFramesOfItsMarksAndCuts) {
+  CameraPath path =
+      parseCameraPath("p", withKeys("{\"t\":0,\"eye\":[0,0,0],\"target\":[1,0,0],\"mark\":true},"
+                                    "{\"t\":1,\"eye\":[1,0,0],\"target\":[2,0,0]},"
+                                    "{\"t\":1.49,\"eye\":[9,0,0],\"target\":[8,0,0],\"cut\":true,\"mark\":true}"));
+  EXPECT_EQ(markedFrames(path), (std::vector<int>{0, 44}));
+  EXPECT_EQ(cutFrames(path), (std::vector<int>{44}));
+  path.fps = 100.0;
+  EXPECT_EQ(cutFrames(path), (std::vector<int>{149}));
+}
+
+TEST(CameraPath, SpeedCutsAndMarksSurviveTheFile) {
+  CameraPath path = randomPath(2, 4);
+  path.speed = PathSpeed::constant;
+  path.keys[2].cut = true;
+  path.keys[3].mark = true;
+  const CameraPath again = parseCameraPath("p", cameraPathJson(path));
+  EXPECT_EQ(again.speed, PathSpeed::constant);
+  EXPECT_EQ(again.keys, path.keys);
+  EXPECT_NE(refusal("{\"speed\":\"fast\",\"keys\":[{\"t\":0,\"eye\":[0,0,0],\"target\":[1,0,0]}]}").find("speed"),
+            std::string::npos);
+  EXPECT_NE(refusal(withKeys("{\"t\":0,\"eye\":[0,0,0],\"target\":[1,0,0],\"cut\":1}")).find("cut"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace strata
