@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 
 #include "core/error.h"
 #include "viewer/bench_options.h"
 #include "viewer/bench_run.h"
+#include "viewer/compare.h"
 #include "viewer/html_text.h"
 #include "viewer/path_maker.h"
 #include "viewer/text_file.h"
@@ -13,15 +13,11 @@
 namespace strata {
 namespace {
 
-std::string reportFile(const std::string& named) {
-  return std::filesystem::is_directory(named) ? named + "/report.json" : named;
-}
-
 int compare(const BenchOptions& options) {
-  const std::string a = reportFile(options.reportA);
-  const std::string b = reportFile(options.reportB);
-  const Comparison comparison = compareReports(a, readText(a), b, readText(b));
+  const Comparison comparison = compareRuns(options.reportA, options.reportB);
   std::cout << comparisonTable(comparison, options.failAbove);
+  if (!options.comparison.empty())
+    writeText(options.comparison, comparisonHtml(options.reportA, options.reportB, comparison, options.failAbove));
   return anyWorse(comparison, options.failAbove) ? 1 : 0;
 }
 

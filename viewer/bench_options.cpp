@@ -45,6 +45,9 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--cold", o.cold, "first drop points.bin from the system's page cache (posix_fadvise)");
   app.add_flag("--settle", o.settle, "wait for full detail before every frame; else the path is flown in real time");
+  app.add_option("--repeat", o.repeat, "fly N times, each from empty caches; the report has medians and the noise")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--video", o.video, "a film of the flight, such as flight.mp4, through ffmpeg; implies --settle");
   app.add_option("--screenshot-every", o.screenshotEvery, "write a PNG of every N-th frame")
       ->check(CLI::Range(1, 1000000));
   app.add_flag("--json", o.json, "print the measures as one JSON object");
@@ -55,6 +58,7 @@ void checkRun(const BenchOptions& o) {
   if (!o.makePath.empty()) return;
   if (o.path.empty() && !o.stills) throw UsageError("nothing to do: --path, --stills or --make-path is missing");
   if (o.output.empty()) throw UsageError("-o DIR is missing");
+  if (!o.video.empty() && o.path.empty()) throw UsageError("--video needs --path");
   if (o.json && o.path.empty()) throw UsageError("--json needs --path: stills have no measures");
 }
 
@@ -79,6 +83,8 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   CLI::App* compare = app.add_subcommand("compare", "ratios of the measures of two runs");
   compare->add_option("A", options.reportA, "folder or report.json of the first run")->required();
   compare->add_option("B", options.reportB, "folder or report.json of the second run")->required();
+  compare->add_option("-o,--output", options.comparison,
+                      "also write a page with the pictures side by side, such as compare.html");
   compare->add_option("--fail-above", raw.failAbove, "exit with 1 when B is worse by more than this, such as 5%");
   try {
     app.parse(argc, argv);
@@ -96,6 +102,7 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
     options.command = BenchOptions::Command::compare;
   } else {
     checkRun(options);
+    options.settle = options.settle || !options.video.empty();
     if (!options.makePath.empty()) options.command = BenchOptions::Command::makePath;
   }
   return options;

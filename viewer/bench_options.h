@@ -29,10 +29,13 @@ struct BenchOptions {
   bool edl = false;
   bool cold = false;
   bool settle = false;
+  int repeat = 1;           ///< flights, each from empty caches
   int screenshotEvery = 0;  ///< frames; 0 = none
+  std::string video;        ///< file for a film of the flight; empty = none
   bool json = false;
 
   std::string reportA, reportB;                                ///< compare: folders or report.json files
+  std::string comparison;                                      ///< compare: HTML file; empty = none
   double failAbove = std::numeric_limits<double>::infinity();  ///< share
 };
 

@@ -1,11 +1,14 @@
 #include "viewer/bench_run.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <numeric>
 
 #include "core/error.h"
 #include "core/log.h"
@@ -79,6 +82,7 @@ Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::str
           {"loader threads", std::to_string(o.streamer.loaderThreads)},
           {"cache", readableBytes(static_cast<double>(o.streamer.cacheBytes))},
           {"frames wait for detail", o.settle ? "yes" : "no"},
+          {"repetitions", std::to_string(o.repeat)},
           {"page cache", pageCache}};
 }
 
@@ -111,32 +115,86 @@ std::vector<std::pair<std::string, double>> counters(const StreamerStats& s) {
           {"peak resident bytes", count(s.peakResidentBytes)}};
 }
 
+/// One flight, begun with empty caches.
+struct Flight {
+  PlayedPath played;
+  BenchMeasures measures;
+  std::vector<std::pair<std::string, double>> counters;
+};
+
+std::uint64_t peakRssBytes() {
+  rusage usage{};
+  return getrusage(RUSAGE_SELF, &usage) == 0 ? static_cast<std::uint64_t>(usage.ru_maxrss) * 1024 : 0;
+}
+
+Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::shared_ptr<const Store>& store,
+               Rasterizer& rasterizer, const PlayOptions& play) {
+  Flight flight;
+  Streamer streamer(store, options.streamer);
+  flight.played = playPath(path, play, streamer, rasterizer);
+  if (!flight.played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
+  const StreamerStats stats = streamer.stats();
+  flight.measures = measureFrames(flight.played.frames);
+  flight.measures.backend = rasterizer.name();
+  flight.measures.device = rasterizer.device();
+  flight.measures.timeToFullDetailMs = flight.played.timeToFullDetailMs;
+  flight.measures.lodMs = stats.lodMsMean;
+  flight.measures.cacheHitRate = stats.hitRate();
+  flight.measures.peakRssBytes = peakRssBytes();
+  flight.counters = counters(stats);
+  return flight;
+}
+
+/// The run whose median frame time is the (lower) median one.
+std::size_t typicalRun(const std::vector<BenchMeasures>& runs) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return runs[a].p50Ms < runs[b].p50Ms; });
+  return order[(order.size() - 1) / 2];
+}
+
+/// Asks for the page cache to be emptied of the store's points; says how far that went.
+std::string dropPages(const Store& store) {
+  char text[64];
+  std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed",
+                100.0 * dropFromPageCache(store.points().name()));
+  logInfo(std::string("page cache: ") + text);
+  return text;
+}
+
+/// Flies options.repeat times; the report gets the median of each measure, and frames and pictures of the typical run.
+/// Pictures and film are taken in the first run alone, so that the others have nothing to do but fly.
 void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& store, Rasterizer& rasterizer,
              const DrawOptions& draw, BenchReport& report) {
   const CameraPath path = readCameraPath(options.path);
-  Streamer streamer(store, options.streamer);
   const double nearPlane = std::min(kNear, kNearShare * store->info().bounds.diagonal());
-  PlayedPath played =
-      playPath(path, {options.size, draw, options.settle, options.screenshotEvery, options.output, nearPlane}, streamer,
-               rasterizer);
-  if (!played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
-  const StreamerStats stats = streamer.stats();
-  const std::string backend = report.measures.backend;
-  const std::string device = report.measures.device;
-  report.frames = std::move(played.frames);
-  report.measures = measureFrames(report.frames);
-  report.measures.backend = backend;
-  report.measures.device = device;
-  report.measures.timeToFullDetailMs = played.timeToFullDetailMs;
-  report.measures.lodMs = stats.lodMsMean;
-  report.measures.cacheHitRate = stats.hitRate();
-  report.counters = counters(stats);
+  std::vector<Flight> flights;
+  for (int run = 0; run < options.repeat; ++run) {
+    PlayOptions play{options.size, draw, options.settle, 0, options.output, {}, nearPlane};
+    if (run == 0) {
+      play.screenshotEvery = options.screenshotEvery;
+      play.video = options.video;
+    }
+    play.pictures = run == 0;
+    if (options.cold && run > 0) dropPages(*store);
+    flights.push_back(flyOnce(options, path, store, rasterizer, play));
+    report.runs.push_back(flights.back().measures);
+    if (options.repeat > 1)
+      logInfo("run " + std::to_string(run + 1) + " of " + std::to_string(options.repeat) + ": median frame " +
+              readableMs(flights.back().measures.p50Ms));
+  }
+  report.measures = medianMeasures(report.runs);
+  Flight& typical = flights[typicalRun(report.runs)];
+  report.pictures = std::move(flights.front().played.pictures);
+  report.frames = std::move(typical.played.frames);
+  report.jumps = std::move(typical.played.jumps);
+  report.counters = std::move(typical.counters);
   report.stages = {stage("taking the render list", report.frames, &FrameRecord::listMs, true),
                    stage("upload", report.frames, &FrameRecord::uploadMs, true),
                    stage("drawing", report.frames, &FrameRecord::drawMs, true),
                    stage("resolve to colour", report.frames, &FrameRecord::resolveMs, true),
                    stage("LOD pass", report.frames, &FrameRecord::lodMs, false)};
-  report.pictures = std::move(played.pictures);
 }
 
 /// A still of full detail. Where the scan is too sparse for a place so near, the camera steps back, at most to
@@ -171,6 +229,7 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
     pictures.push_back(
         {still.name, still.name + ".png", false, takeStill(still, farthest, draw, streamer, rasterizer)});
     writePng(options.output + "/" + pictures.back().file, pictures.back().image);
+    pictures.back().hash = imageHash(pictures.back().image);
     farthest = scene.enclosed ? 0.0 : 0.7 * still.subject;
   }
   report.pictures.insert(report.pictures.begin(), pictures.begin(), pictures.end());
@@ -184,22 +243,18 @@ BenchReport runBench(const BenchOptions& options) {
   makeFolder(options.output);
 
   std::string pageCache = "left as it was";
-  if (options.cold) {
-    char text[64];
-    std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed",
-                  100.0 * dropFromPageCache(store->points().name()));
-    pageCache = text;
-    logInfo("page cache: " + pageCache);
-  }
+  if (options.cold) pageCache = dropPages(*store);
   DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, options.colour);
   draw.pointSize = options.pointSize;
   draw.edl = options.edl;
 
   BenchReport report;
   report.program = std::string("strata-bench ") + STRATA_VERSION;
+  report.commit = STRATA_COMMIT;
   report.when = utcNow();
   report.storePath = options.store;
   report.storeName = storeName(options.store);
+  report.storeHash = storeHash(*store);
   report.store = storeFacts(*store);
   report.options = optionFacts(options, draw, pageCache);
   report.machine = thisMachine();

@@ -23,7 +23,27 @@ struct FrameRecord {
   std::uint32_t missingNodes = 0;   ///< wanted, not there yet
   std::uint64_t bytesRead = 0;      ///< from the store since it was opened
   std::uint64_t bytesUploaded = 0;  ///< in this frame
+  std::uint64_t queueLength = 0;    ///< nodes waiting to be read
+  std::uint64_t residentBytes = 0;  ///< of decoded nodes in memory
+  std::uint64_t gpuBytes = 0;       ///< of nodes in GPU memory
+  std::uint64_t pixelsCovered = 0;  ///< that show a point
   bool hitch = false;
+
+  /// Share of the wanted nodes that are drawn, 0 to 1.
+  double detail() const {
+    const double wanted = static_cast<double>(nodes) + missingNodes;
+    return wanted > 0.0 ? nodes / wanted : 1.0;
+  }
+};
+
+/// How fast the picture fills after the camera was put somewhere new: at the start and at each cut of the path.
+/// Milliseconds from then until the first finished frame with that share of the wanted nodes; -1: not before the next
+/// jump or the end.
+struct JumpRecord {
+  static constexpr double kShares[3] = {0.80, 0.95, 1.00};
+
+  double t = 0.0;  ///< seconds along the path
+  double reachedMs[3] = {-1.0, -1.0, -1.0};
 };
 
 /// The figures of a run; `--json` prints exactly these.
@@ -37,6 +57,11 @@ struct BenchMeasures {
   std::uint64_t bytesRead = 0;
   double cacheHitRate = 0.0;  ///< 0 to 1
   int hitches = 0;
+  double hitchesPerMinute = 0.0;   ///< of the sum of the frame times
+  double hitchTimeShare = 0.0;     ///< of that sum that hitches took, 0 to 1
+  double pointsPerPixelWon = 0.0;  ///< points sent through projection for each pixel that shows one
+  std::uint64_t peakRssBytes = 0;  ///< of the process, since it began
+  std::uint64_t gpuPeakBytes = 0;  ///< of node data
   std::string backend;
   std::string device;
 };
@@ -52,26 +77,16 @@ double percentile(std::span<const double> values, double p);
 /// The part of the measures that follows from the frames alone.
 BenchMeasures measureFrames(std::span<const FrameRecord> frames);
 
+/// Of several runs of one flight: the median of each measure by itself, and how far each strays.
+BenchMeasures medianMeasures(std::span<const BenchMeasures> runs);
+struct MeasureNoise {
+  std::string name;    ///< "frame_ms p50"
+  double share = 0.0;  ///< (largest - smallest) / median over the runs
+};
+/// Nothing for fewer than two runs.
+std::vector<MeasureNoise> measureNoise(std::span<const BenchMeasures> runs);
+
 /// One line of JSON.
 std::string measuresJson(const BenchMeasures& measures);
-
-/// One measure of two runs. `ratio` is b / a.
-struct MeasureChange {
-  std::string name;
-  double a = 0.0, b = 0.0;
-  double ratio = 1.0;
-  double worseBy = 0.0;  ///< share by which b is worse than a, 0.05 = 5 %; negative = better; 0 where neither is better
-};
-
-/// Compares two report.json texts. Throws Error naming `fileA` or `fileB` when one is no report.
-struct Comparison {
-  std::vector<MeasureChange> changes;
-  std::vector<std::string> differences;  ///< "backend: cpu / points": what makes the runs unlike
-};
-Comparison compareReports(const std::string& fileA, const std::string& jsonA, const std::string& fileB,
-                          const std::string& jsonB);
-std::string comparisonTable(const Comparison& comparison, double failAbove);
-/// `failAbove` as a share. Infinite = nothing fails.
-bool anyWorse(const Comparison& comparison, double failAbove);
 
 }  // namespace strata

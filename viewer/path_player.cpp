@@ -3,14 +3,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <iterator>
+#include <optional>
+#include <span>
 #include <thread>
 #include <utility>
+
+#include "viewer/video.h"
 
 namespace strata {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for full detail of one view
+constexpr std::chrono::milliseconds kDetailStep{2};         // how finely the detail of the first view is watched
 constexpr int kMostUploadFrames = 1000;
 constexpr int kReportPictures = 16;        // that the report shows
 constexpr std::size_t kHeldPictures = 24;  // waiting to be encoded; 8 MB each at 1920x1080
@@ -22,12 +28,17 @@ double msSince(Clock::time_point start) {
 /// Pictures wait here while the flight goes on and become files in a batch.
 class PictureShelf {
  public:
-  PictureShelf(const PlayOptions& options, int frames) : folder_(options.folder), every_(options.screenshotEvery) {
-    if (every_ > 0) shownEvery_ = std::max(1, (((frames - 1) / every_ + 1) + kReportPictures - 1) / kReportPictures);
+  PictureShelf(const PlayOptions& options, const CameraPath& path)
+      : folder_(options.folder),
+        every_(options.screenshotEvery),
+        marked_(options.pictures ? markedFrames(path) : std::vector<int>{}) {
+    const int count = (every_ > 0 ? (path.frames() - 1) / every_ + 1 : 0) + static_cast<int>(marked_.size());
+    shownEvery_ = std::max(1, (count + kReportPictures - 1) / kReportPictures);
   }
 
   void offer(const FrameRecord& record, const Frame& frame) {
-    if (every_ <= 0 || record.index % every_ != 0) return;
+    const bool marked = std::binary_search(marked_.begin(), marked_.end(), record.index);
+    if (!marked && (every_ <= 0 || record.index % every_ != 0)) return;
     char file[40], title[64];
     std::snprintf(file, sizeof file, "frame_%05d.png", record.index);
     std::snprintf(title, sizeof title, "frame %d, %.1f s", record.index, record.t);
@@ -38,6 +49,7 @@ class PictureShelf {
   void flush() {
     for (ReportPicture& picture : waiting_) {
       writePng(folder_ + "/" + picture.file, picture.image);
+      picture.hash = imageHash(picture.image);
       const bool shown = static_cast<int>(done_.size()) % shownEvery_ == 0;
       if (!shown) picture.image = {};
       done_.push_back(std::move(picture));
@@ -53,15 +65,46 @@ class PictureShelf {
  private:
   const std::string folder_;
   const int every_;
+  const std::vector<int> marked_;
   int shownEvery_ = 1;
   std::vector<ReportPicture> waiting_, done_;
 };
 
+/// Watches how the picture fills after each jump of the camera.
+class JumpWatch {
+ public:
+  void begin(double t) {
+    jumps_.push_back({t});
+    began_ = Clock::now();
+  }
+  /// `list` is what was drawn last; `since` are the views since the jump.
+  void see(const RenderList& list, std::span<const View> since) {
+    if (jumps_.empty() || jumps_.back().reachedMs[2] >= 0.0) return;
+    if (std::find(since.rbegin(), since.rend(), list.view) == since.rend()) return;  // chosen before the jump
+    const double wanted = static_cast<double>(list.items.size()) + list.missingNodes;
+    const double detail = wanted > 0.0 ? static_cast<double>(list.items.size()) / wanted : 1.0;
+    const double ms = msSince(began_);
+    for (std::size_t i = 0; i < std::size(JumpRecord::kShares); ++i)
+      if (double& reached = jumps_.back().reachedMs[i]; reached < 0.0 && detail >= JumpRecord::kShares[i]) reached = ms;
+  }
+  std::vector<JumpRecord> take() { return std::move(jumps_); }
+
+ private:
+  std::vector<JumpRecord> jumps_;
+  Clock::time_point began_;
+};
+
+std::uint64_t coveredPixels(const Frame& frame) {
+  return frame.pointId.size() -
+         static_cast<std::uint64_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint));
+}
+
 FrameRecord drawFrame(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer,
-                      Frame& frame) {
+                      Frame& frame, const RenderList*& drawn) {
   FrameRecord record;
   const Clock::time_point start = Clock::now();
   const RenderList& list = streamer.beginFrame();
+  drawn = &list;
   record.listMs = msSince(start);
   const DrawStats stats = rasterizer.draw(list, view, draw, frame);
   record.frameMs = msSince(start);
@@ -73,6 +116,7 @@ FrameRecord drawFrame(const View& view, const DrawOptions& draw, Streamer& strea
   record.nodes = static_cast<std::uint32_t>(list.items.size());
   record.missingNodes = list.missingNodes;
   record.bytesUploaded = stats.bytesUploaded;
+  record.gpuBytes = stats.gpuBytes;
   return record;
 }
 
@@ -90,23 +134,40 @@ Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer
 
 PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer) {
   const int frames = path.frames();
+  const PathClock clock(path);
   const auto view = [&](int index) {
-    View v = viewAt(path, path.keys.front().t + index / path.fps, options.size.width, options.size.height);
+    View v =
+        viewAt(path, clock.keyTime(path.keys.front().t + index / path.fps), options.size.width, options.size.height);
     v.nearPlane = options.nearPlane;
     return v;
   };
   PlayedPath played;
+  JumpWatch jumps;
+  const std::vector<View> firstView{view(0)};
   const Clock::time_point opened = Clock::now();
-  streamer.setView(view(0));
-  played.reachedFullDetail = streamer.waitUntilComplete(kLongestWait);
+  jumps.begin(0.0);
+  streamer.setView(firstView.front());
+  while (!played.reachedFullDetail && Clock::now() - opened < kLongestWait) {
+    played.reachedFullDetail = streamer.waitUntilComplete(kDetailStep);
+    jumps.see(streamer.beginFrame(), firstView);
+  }
   played.timeToFullDetailMs = msSince(opened);
-  Frame frame = drawComplete(view(0), options.draw, streamer, rasterizer);
+  Frame frame = drawComplete(firstView.front(), options.draw, streamer, rasterizer);
 
-  PictureShelf shelf(options, frames);
+  PictureShelf shelf(options, path);
+  std::optional<VideoWriter> video;
+  if (!options.video.empty()) video.emplace(options.video, options.size.width, options.size.height, path.fps);
+  const std::vector<int> cuts = cutFrames(path);
+  std::vector<View> sinceJump;
   played.frames.reserve(static_cast<std::size_t>(frames));
   Clock::time_point due = Clock::now();
   for (int index = 0; index < frames; ++index) {
     const View now = view(index);
+    if (std::binary_search(cuts.begin(), cuts.end(), index)) {
+      jumps.begin(index / path.fps);
+      sinceJump.clear();
+    }
+    sinceJump.push_back(now);
     streamer.setView(now);
     double settleMs = 0.0;
     if (options.settle) {
@@ -114,21 +175,29 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
       streamer.waitUntilComplete(kLongestWait);
       settleMs = msSince(start);
     }
-    FrameRecord record = drawFrame(now, options.draw, streamer, rasterizer, frame);
+    const RenderList* list = nullptr;
+    FrameRecord record = drawFrame(now, options.draw, streamer, rasterizer, frame, list);
+    jumps.see(*list, sinceJump);
     const StreamerStats stats = streamer.stats();
     record.index = index;
     record.t = index / path.fps;
     record.settleMs = settleMs;
     record.lodMs = stats.lodMs;
     record.bytesRead = stats.bytesRead;
+    record.queueLength = stats.queueLength;
+    record.residentBytes = stats.residentBytes;
+    record.pixelsCovered = coveredPixels(frame);
     record.hitch = index > 0 && isHitch(played.frames.back().frameMs, record.frameMs);
     played.frames.push_back(record);
     shelf.offer(record, frame);
+    if (video) video->add(imageOf(frame));
     // Real time: the loader gets the time that a flight at this rate leaves it, no more.
     due = std::max(due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / path.fps)),
                    Clock::now());
     if (!options.settle) std::this_thread::sleep_until(due);
   }
+  if (video) video->finish();
+  played.jumps = jumps.take();
   played.pictures = shelf.take();
   return played;
 }

@@ -17,7 +17,9 @@ struct PlayOptions {
   bool settle = false;
   int screenshotEvery = 0;
   std::string folder;  ///< for the pictures
+  std::string video;   ///< film of every frame; empty = none
   double nearPlane = 0.01;
+  bool pictures = true;  ///< false: none at all, marked frames neither
 };
 
 /// What a flight left behind.
@@ -25,10 +27,12 @@ struct PlayedPath {
   std::vector<FrameRecord> frames;
   double timeToFullDetailMs = 0.0;
   bool reachedFullDetail = false;
+  std::vector<JumpRecord> jumps;        ///< the start, then each cut of the path
   std::vector<ReportPicture> pictures;  ///< the ones that the report does not show have no pixels
 };
 
-/// The whole flight, on the calling thread, which becomes the streamer's render thread.
+/// The whole flight, on the calling thread, which becomes the streamer's render thread. Pictures are taken of every
+/// screenshotEvery-th frame and of the path's marked ones.
 PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer);
 
 /// Draws until everything in the list is on the GPU: one picture in full detail. Waits for the streamer first.

@@ -1,5 +1,8 @@
 #include "viewer/report.h"
 
+#include <xxhash.h>
+
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -10,20 +13,42 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr int kReportSchema = 2;  // docs/benchmarks.md, "report.json"
+
 Json facts(const std::vector<std::pair<std::string, std::string>>& pairs) {
   Json json = Json::object();
   for (const auto& [name, value] : pairs) json[name] = value;
   return json;
 }
 
+std::string hashText(XXH64_hash_t hash) {
+  char text[17];
+  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
+  return text;
+}
+
 }  // namespace
+
+std::string imageHash(const Image& image) {
+  const std::int32_t size[2] = {image.width, image.height};
+  const XXH64_hash_t seed = XXH3_64bits(size, sizeof size);
+  return hashText(XXH3_64bits_withSeed(image.pixels.data(), image.pixels.size() * sizeof(std::uint32_t), seed));
+}
+
+std::string storeHash(const Store& store) {
+  const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
+  return hashText(XXH3_64bits(nodes.data(), nodes.size() * sizeof(NodeRecord)));
+}
 
 std::string reportJson(const BenchReport& report) {
   Json json;
+  json["schema"] = kReportSchema;
   json["program"] = report.program;
+  json["commit"] = report.commit;
   json["when"] = report.when;
   json["store"] = facts(report.store);
   json["store"]["path"] = report.storePath;
+  json["store"]["hash"] = report.storeHash;
   json["options"] = facts(report.options);
   json["machine"] = {{"name", report.machine.name},
                      {"system", report.machine.system},
@@ -31,27 +56,43 @@ std::string reportJson(const BenchReport& report) {
                      {"cores", report.machine.cores},
                      {"memory_bytes", report.machine.memory}};
   json["measures"] = Json::parse(measuresJson(report.measures));
+  json["runs"] = Json::array();
+  for (const BenchMeasures& run : report.runs) json["runs"].push_back(Json::parse(measuresJson(run)));
+  json["noise"] = Json::object();
+  for (const MeasureNoise& noise : measureNoise(report.runs)) json["noise"][noise.name] = noise.share;
+  json["jumps"] = Json::array();
+  for (const JumpRecord& jump : report.jumps) {
+    Json reached = Json::object();
+    for (std::size_t i = 0; i < std::size(JumpRecord::kShares); ++i)
+      reached[std::to_string(std::lround(100.0 * JumpRecord::kShares[i]))] =
+          jump.reachedMs[i] >= 0.0 ? Json(jump.reachedMs[i]) : Json();
+    json["jumps"].push_back({{"t", jump.t}, {"reached_ms", reached}});
+  }
   json["stages_ms"] = Json::object();
   for (const StageTime& stage : report.stages)
     json["stages_ms"][stage.name] = {{"mean", stage.meanMs}, {"p95", stage.p95Ms}};
   json["counters"] = Json::object();
   for (const auto& [name, value] : report.counters) json["counters"][name] = value;
   json["pictures"] = Json::array();
-  for (const ReportPicture& picture : report.pictures) json["pictures"].push_back(picture.file);
+  for (const ReportPicture& picture : report.pictures)
+    json["pictures"].push_back({{"file", picture.file}, {"title", picture.title}, {"hash", picture.hash}});
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 std::string framesCsv(const std::vector<FrameRecord>& frames) {
   std::string csv =
       "frame,t,frame_ms,list_ms,upload_ms,draw_ms,resolve_ms,settle_ms,lod_ms,points_drawn,points_listed,nodes,"
-      "missing_nodes,bytes_read,bytes_uploaded,hitch\n";
-  char line[320];
+      "missing_nodes,bytes_read,bytes_uploaded,queue_length,resident_bytes,gpu_bytes,pixels_covered,hitch\n";
+  char line[420];
   for (const FrameRecord& f : frames) {
-    std::snprintf(line, sizeof line, "%d,%.6f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.4f,%llu,%llu,%u,%u,%llu,%llu,%d\n",
+    std::snprintf(line, sizeof line,
+                  "%d,%.6f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.4f,%llu,%llu,%u,%u,%llu,%llu,%llu,%llu,%llu,%llu,%d\n",
                   f.index, f.t, f.frameMs, f.listMs, f.uploadMs, f.drawMs, f.resolveMs, f.settleMs, f.lodMs,
                   static_cast<unsigned long long>(f.pointsDrawn), static_cast<unsigned long long>(f.pointsListed),
                   f.nodes, f.missingNodes, static_cast<unsigned long long>(f.bytesRead),
-                  static_cast<unsigned long long>(f.bytesUploaded), f.hitch ? 1 : 0);
+                  static_cast<unsigned long long>(f.bytesUploaded), static_cast<unsigned long long>(f.queueLength),
+                  static_cast<unsigned long long>(f.residentBytes), static_cast<unsigned long long>(f.gpuBytes),
+                  static_cast<unsigned long long>(f.pixelsCovered), f.hitch ? 1 : 0);
     csv += line;
   }
   return csv;

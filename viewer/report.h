@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "io/store.h"
 #include "viewer/machine.h"
 #include "viewer/measures.h"
 
@@ -21,23 +22,33 @@ struct ReportPicture {
   std::string file;          ///< beside the report
   bool ofTheFlight = false;  ///< else a still
   Image image;               ///< without pixels where the report does not show it
+  std::string hash = {};     ///< imageHash() of the picture in its full size
 };
 
 /// All that a run leaves behind, in words and numbers.
 struct BenchReport {
   std::string program;  ///< "strata-bench 0.1.0"
+  std::string commit;   ///< of the source it was built from; "unknown" outside of a checkout
   std::string when;     ///< ISO 8601, UTC
   std::string storePath;
   std::string storeName;                                     ///< for the headline
+  std::string storeHash;                                     ///< XXH3-64 of hierarchy.bin's records, 16 digits
   std::vector<std::pair<std::string, std::string>> store;    ///< facts about the store, to be read
   std::vector<std::pair<std::string, std::string>> options;  ///< of this run
   Machine machine;
   BenchMeasures measures;  ///< frames = 0: no path was played, the report shows pictures only
   std::vector<StageTime> stages;
   std::vector<std::pair<std::string, double>> counters;  ///< of the streamer, by name
-  std::vector<FrameRecord> frames;
+  std::vector<FrameRecord> frames;                       ///< of the run whose median frame time is the median one
+  std::vector<JumpRecord> jumps;                         ///< of the same run
+  std::vector<BenchMeasures> runs;                       ///< each repetition by itself, in order
   std::vector<ReportPicture> pictures;
 };
+
+/// XXH3-64 of size and pixels, 16 hexadecimal digits: equal pictures have equal hashes.
+std::string imageHash(const Image& image);
+/// Of the hierarchy, which holds a checksum of every payload: equal stores have equal hashes.
+std::string storeHash(const Store& store);
 
 std::string reportJson(const BenchReport& report);
 std::string framesCsv(const std::vector<FrameRecord>& frames);

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "tests/support/test_data.h"
+#include "viewer/compare.h"
 #include "viewer/html_plot.h"
 #include "viewer/html_text.h"
 #include "viewer/text_file.h"
@@ -268,6 +269,77 @@ TEST(Compare, RefusesWhatIsNoReport) {
   EXPECT_THROW(compareReports("A", "{}", "B", good), Error);
   EXPECT_THROW(compareReports("A", good, "B", "nonsense"), Error);
   EXPECT_THROW(compareReports("A", good, "B", R"({"measures":{"frame_ms":5}})"), Error);
+}
+
+TEST(Compare, CallsNothingWorseThatStraysAsFarByItself) {
+  BenchReport a = someReport();
+  for (const double factor : {0.9, 1.0, 1.1}) {
+    a.runs.push_back(a.measures);
+    a.runs.back().p50Ms *= factor;
+  }
+  BenchReport b = a;
+  b.measures.p50Ms *= 1.15;
+  EXPECT_FALSE(anyWorse(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05));
+  b.measures.p50Ms *= 1.15;
+  EXPECT_TRUE(anyWorse(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05));
+}
+
+TEST(Compare, PutsEachPairOfPicturesSideBySideWithItsPsnr) {
+  const test::TempFolder folder;
+  BenchReport report = someReport();
+  report.pictures = {{"overview", "overview.png", false, {8, 8, std::vector<std::uint32_t>(64, 0xff102030u)}}};
+  for (const char* run : {"a", "b"}) {
+    makeFolder((folder / run).string());
+    writeReport((folder / run).string(), report);
+    writePng((folder / run / "overview.png").string(), report.pictures[0].image);
+    report.pictures[0].image.pixels[5] ^= 0x40u;
+  }
+  const std::string a = (folder / "a").string(), b = (folder / "b").string();
+  const Comparison same = compareRuns(a, a);
+  ASSERT_EQ(same.pictures.size(), 1u);
+  EXPECT_TRUE(std::isinf(same.pictures[0].psnr));
+  const Comparison other = compareRuns(a, b);
+  EXPECT_NEAR(other.pictures[0].psnr, 10.0 * std::log10(255.0 * 255.0 * 3.0 * 64.0 / (64.0 * 64.0)), 1e-9);
+  const std::string html = comparisonHtml(a, b, other, 0.05);
+  std::size_t pictures = 0;
+  for (std::size_t at = html.find("<img"); at != std::string::npos; at = html.find("<img", at + 1)) ++pictures;
+  EXPECT_EQ(pictures, 2u);
+}
+
+TEST(Psnr, OfPicturesOfOtherSizesIsNoNumber) { EXPECT_TRUE(std::isnan(psnr({1, 2, {0, 0}}, {2, 1, {0, 0}}))); }
+
+TEST(Measures, TheMedianOfRunsIsTakenMeasureByMeasure) {
+  std::vector<BenchMeasures> runs(3, measureFrames(someFrames(5)));
+  runs[0].p50Ms = 5.0, runs[1].p50Ms = 7.0, runs[2].p50Ms = 6.0;
+  runs[0].hitches = 4, runs[1].hitches = 0, runs[2].hitches = 1;
+  EXPECT_EQ(medianMeasures(runs).p50Ms, 6.0);
+  EXPECT_EQ(medianMeasures(runs).hitches, 1);
+  const std::vector<MeasureNoise> noise = measureNoise(runs);
+  ASSERT_FALSE(noise.empty());
+  EXPECT_EQ(noise[0].name, "frame_ms p50");
+  EXPECT_NEAR(noise[0].share, 2.0 / 6.0, 1e-12);
+  EXPECT_TRUE(measureNoise(std::span(runs).first(1)).empty());
+}
+
+TEST(Measures, HitchesCountTheirShareOfTheTime) {
+  std::vector<FrameRecord> frames(4);
+  for (FrameRecord& frame : frames) frame.frameMs = 20.0;
+  frames[2].frameMs = 140.0;
+  frames[2].hitch = true;
+  frames[0].pointsDrawn = 300;
+  frames[0].pixelsCovered = 100;
+  const BenchMeasures m = measureFrames(frames);
+  EXPECT_NEAR(m.hitchTimeShare, 0.7, 1e-12);
+  EXPECT_NEAR(m.hitchesPerMinute, 1.0 / (0.2 / 60.0), 1e-9);
+  EXPECT_NEAR(m.pointsPerPixelWon, 3.0, 1e-12);
+}
+
+TEST(ImageHash, TellsPicturesApartByPixelsAndBySize) {
+  const Image a{2, 1, {1, 2}}, b{1, 2, {1, 2}}, c{2, 1, {1, 3}};
+  EXPECT_EQ(imageHash(a), imageHash(a));
+  EXPECT_NE(imageHash(a), imageHash(b));
+  EXPECT_NE(imageHash(a), imageHash(c));
+  EXPECT_EQ(imageHash(a).size(), 16u);
 }
 
 }  // namespace
