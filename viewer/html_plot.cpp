@@ -62,7 +62,7 @@ std::string axesHtml(const Plot& plot, const Scale& scale) {
   for (int i = 0; i <= kGridLines; ++i) {
     const double share = static_cast<double>(i) / kGridLines;
     html += "<span class=\"x\" style=\"left:" + number(100.0 * share) + "%\">" +
-            number(scale.x0 + scale.xSpan * share) + " s</span>";
+            number(scale.x0 + scale.xSpan * share) + " " + htmlEscape(plot.unit) + "</span>";
   }
   return html;
 }
@@ -82,7 +82,7 @@ std::string plotHtml(const Plot& plot) {
   double highest = 0.0;
   for (const PlotLine& line : plot.lines)
     for (const double value : line.values) highest = std::max(highest, value);
-  const Scale scale{plot.x.front(), plot.x.back() - plot.x.front(), niceCeiling(highest)};
+  const Scale scale{plot.x.front(), plot.x.back() - plot.x.front(), plot.top > 0.0 ? plot.top : niceCeiling(highest)};
 
   std::string html = "<figure class=\"plot\"><figcaption><b>" + htmlEscape(plot.title) + "</b>";
   for (const PlotLine& line : plot.lines)

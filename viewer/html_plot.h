@@ -16,10 +16,12 @@ struct PlotLine {
 struct Plot {
   std::string title;
   std::string note;       ///< one sentence under the title, may be empty
-  std::vector<double> x;  ///< ascending, seconds
+  std::vector<double> x;  ///< ascending
   std::vector<PlotLine> lines;
   std::vector<double> marks;                ///< x of upright ticks at the top
   std::string (*format)(double) = nullptr;  ///< of the y labels
+  std::string unit = "s";                   ///< of x
+  double top = 0.0;                         ///< y at the upper edge; 0 = a round number above the highest value
 };
 
 /// A <figure> with an inline SVG. Labels are HTML beside the drawing, so they keep their size on a phone.

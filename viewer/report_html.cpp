@@ -123,6 +123,8 @@ std::string keyFigures(const BenchMeasures& m) {
   add(readableBytes(static_cast<double>(m.bytesRead)), "read from the store");
   add(readableCount(m.cacheHitRate * 100.0) + " %", "of nodes found in the cache");
   add(std::to_string(m.hitches), "hitches (over 60 ms and 1.5 × the frame before)");
+  add(readableCount(m.pointsPerPixelWon), "points drawn for a pixel won");
+  add(readableBytes(static_cast<double>(m.peakRssBytes)), "memory, peak");
   return html + "</div>\n";
 }
 
@@ -132,6 +134,28 @@ std::vector<double> column(const std::vector<FrameRecord>& frames, Get get) {
   values.reserve(frames.size());
   for (const FrameRecord& frame : frames) values.push_back(static_cast<double>(get(frame)));
   return values;
+}
+
+std::string readablePercent(double value) { return readableCount(value) + " %"; }
+
+std::vector<double> cutsOf(const BenchReport& report) {
+  std::vector<double> cuts;
+  for (const JumpRecord& jump : report.jumps)
+    if (jump.t > 0.0) cuts.push_back(jump.t);
+  return cuts;
+}
+
+/// Frame time against the share of frames that take no longer.
+Plot percentilePlot(const std::vector<FrameRecord>& frames) {
+  const std::vector<double> times = column(frames, [](const FrameRecord& f) { return f.frameMs; });
+  Plot plot{"Frame time by percentile", "The share of frames that took no longer.", {}, {}, {}, readableMs, "%"};
+  PlotLine line{"a frame", "a", {}, true};
+  for (int p = 0; p <= 200; ++p) {
+    plot.x.push_back(p / 2.0);
+    line.values.push_back(percentile(times, p / 2.0));
+  }
+  plot.lines.push_back(std::move(line));
+  return plot;
 }
 
 std::string plotsHtml(const BenchReport& report) {
@@ -151,16 +175,36 @@ std::string plotsHtml(const BenchReport& report) {
   Plot points{"Points over the path", "Drawn: sent through projection after culling.", t, {}, {}, readableCount};
   points.lines.push_back(line("in the render list", "b", false, [](const FrameRecord& f) { return f.pointsListed; }));
   points.lines.push_back(line("drawn", "a", true, [](const FrameRecord& f) { return f.pointsDrawn; }));
-  Plot missing{"Missing nodes over the path",
-               "Wanted by the view, not loaded yet: a coarser parent stands in.",
-               t,
-               {},
-               {},
-               readableCount};
-  missing.lines.push_back(line("missing", "b", true, [](const FrameRecord& f) { return f.missingNodes; }));
-  Plot bytes{"Bytes read from the store", "", t, {}, {}, readableBytes};
-  bytes.lines.push_back(line("since the start", "a", true, [](const FrameRecord& f) { return f.bytesRead; }));
-  return plotHtml(time) + plotHtml(points) + plotHtml(missing) + plotHtml(bytes);
+  Plot detail{"Detail over the path",
+              "Share of the nodes that the view wants and that are drawn; for the rest a coarser parent stands in.",
+              t,
+              {},
+              cutsOf(report),
+              readablePercent};
+  detail.top = 100.0;
+  detail.lines.push_back(line("detail", "b", true, [](const FrameRecord& f) { return 100.0 * f.detail(); }));
+  Plot bytes{"Bytes", "", t, {}, {}, readableBytes};
+  bytes.lines.push_back(line("read from the store", "a", true, [](const FrameRecord& f) { return f.bytesRead; }));
+  bytes.lines.push_back(line("nodes in memory", "b", false, [](const FrameRecord& f) { return f.residentBytes; }));
+  Plot queue{"Nodes waiting to be read", "", t, {}, {}, readableCount};
+  queue.lines.push_back(line("load queue", "b", true, [](const FrameRecord& f) { return f.queueLength; }));
+  return plotHtml(time) + plotHtml(percentilePlot(frames)) + plotHtml(points) + plotHtml(detail) + plotHtml(queue) +
+         plotHtml(bytes);
+}
+
+/// How fast the picture fills after each jump.
+std::string jumpsHtml(const std::vector<JumpRecord>& jumps) {
+  std::string rows;
+  for (const JumpRecord& jump : jumps) {
+    rows += "<tr><td>" + (jump.t > 0.0 ? "cut at " + readableMs(1000.0 * jump.t) : std::string("start")) + "</td>";
+    for (const double ms : jump.reachedMs)
+      rows += "<td class=\"n\">" + (ms >= 0.0 ? readableMs(ms) : std::string("not reached")) + "</td>";
+    rows += "</tr>";
+  }
+  if (rows.empty()) return rows;
+  return "<h2>Until the picture is whole</h2>\n<table><tr><th>after</th><th class=\"n\">80 %</th><th "
+         "class=\"n\">95 %</th><th class=\"n\">100 % of the nodes</th></tr>" +
+         rows + "</table>\n";
 }
 
 std::string stagesHtml(const std::vector<StageTime>& stages) {
@@ -199,7 +243,8 @@ std::string reportHtml(const BenchReport& report) {
   html += stillsHtml(report.pictures);
   if (report.measures.frames > 0)
     html += keyFigures(report.measures) + "<h2>Along the path</h2>\n" + plotsHtml(report) +
-            flightPicturesHtml(report.pictures) + "<h2>Where a frame's time goes</h2>\n" + stagesHtml(report.stages);
+            flightPicturesHtml(report.pictures) + jumpsHtml(report.jumps) + "<h2>Where a frame's time goes</h2>\n" +
+            stagesHtml(report.stages);
   const Machine& machine = report.machine;
   std::vector<std::pair<std::string, std::string>> machineFacts{
       {"processor", machine.cpu},

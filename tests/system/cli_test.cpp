@@ -251,6 +251,51 @@ TEST_F(RoomStore, StillsAreThreePictures) {
   for (const char* name : {"overview.png", "close.png", "detail.png"}) expectPicture(out / name);
 }
 
+TEST_F(RoomStore, ARepeatedFlightHasMarkedPicturesJumpsAndNoiseAndEqualsItself) {
+  const fs::path out = *folder_ / "repeated";
+  fs::create_directory(out);
+  writeBytes(
+      out / "path.json",
+      R"({"fps":10,"speed":"constant","keys":[)"
+      R"({"t":0,"eye":[1,1,1],"target":[3,3,1]},{"t":1,"eye":[2,1,1],"target":[3,3,1],"mark":true},)"
+      R"({"t":1.5,"eye":[2,3,2],"target":[0,0,0],"cut":true,"mark":true},{"t":2,"eye":[3,3,2],"target":[0,0,0]}]})");
+  for (const char* run : {"a", "b"}) {
+    const Finished bench = runProgram(
+        "strata-bench", {store().string(), "--path", (out / "path.json").string(), "-o", (out / run).string(),
+                         "--backend", "cpu", "--size", "160x90", "--repeat", "3", "--settle"});
+    ASSERT_EQ(bench.exitCode, 0) << bench.err;
+  }
+  const Json report = Json::parse(readWhole(out / "a/report.json"));
+  EXPECT_EQ(report.at("runs").size(), 3u);
+  EXPECT_EQ(report.at("jumps").size(), 2u);
+  EXPECT_TRUE(report.at("jumps")[1].at("reached_ms").at("100").is_number());
+  EXPECT_TRUE(report.at("noise").contains("frame_ms p50"));
+  ASSERT_EQ(report.at("pictures").size(), 2u);
+  const Json other = Json::parse(readWhole(out / "b/report.json"));
+  EXPECT_EQ(report.at("pictures"), other.at("pictures")) << "a settled flight gives other pictures each time";
+  EXPECT_EQ(report.at("store").at("hash"), other.at("store").at("hash"));
+  const Finished compared = runProgram(
+      "strata-bench", {"compare", (out / "a").string(), (out / "b").string(), "-o", (out / "compare.html").string()});
+  EXPECT_EQ(compared.exitCode, 0) << compared.err;
+  EXPECT_NE(compared.out.find("frame_00010.png: equal"), std::string::npos) << compared.out;
+  EXPECT_NE(readWhole(out / "compare.html").find("</html>"), std::string::npos);
+}
+
+TEST_F(RoomStore, AFilmIsTakenWhereFfmpegIsInstalledAndRefusedInOneLineElsewhere) {
+  const fs::path out = *folder_ / "film";
+  fs::create_directory(out);
+  writeBytes(out / "path.json",
+             R"({"fps":10,"keys":[{"t":0,"eye":[1,1,1],"target":[3,3,1]},{"t":0.5,"eye":[2,1,1],"target":[3,3,1]}]})");
+  const Finished bench =
+      runProgram("strata-bench", {store().string(), "--path", (out / "path.json").string(), "-o", out.string(),
+                                  "--backend", "cpu", "--size", "161x91", "--video", (out / "flight.mp4").string()});
+  if (bench.exitCode == 0) {
+    EXPECT_GT(fs::file_size(out / "flight.mp4"), 500u);
+  } else {
+    EXPECT_NE(bench.err.find("ffmpeg, which is not installed"), std::string::npos) << bench.err;
+  }
+}
+
 TEST_F(RoomStore, ABenchRefusesWhatItCannotPlay) {
   const std::string out = (*folder_ / "refused").string();
   writeBytes(*folder_ / "path.json", "{\"fps\":30}");
