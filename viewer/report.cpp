@@ -1,11 +1,10 @@
 #include "viewer/report.h"
 
-#include <xxhash.h>
-
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "io/checksum.h"
 #include "viewer/text_file.h"
 
 namespace strata {
@@ -21,7 +20,7 @@ Json facts(const std::vector<std::pair<std::string, std::string>>& pairs) {
   return json;
 }
 
-std::string hashText(XXH64_hash_t hash) {
+std::string hashText(std::uint64_t hash) {
   char text[17];
   std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
   return text;
@@ -31,13 +30,11 @@ std::string hashText(XXH64_hash_t hash) {
 
 std::string imageHash(const Image& image) {
   const std::int32_t size[2] = {image.width, image.height};
-  const XXH64_hash_t seed = XXH3_64bits(size, sizeof size);
-  return hashText(XXH3_64bits_withSeed(image.pixels.data(), image.pixels.size() * sizeof(std::uint32_t), seed));
+  return hashText(checksum(std::as_bytes(std::span(image.pixels)), checksum(std::as_bytes(std::span(size)))));
 }
 
 std::string storeHash(const Store& store) {
-  const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
-  return hashText(XXH3_64bits(nodes.data(), nodes.size() * sizeof(NodeRecord)));
+  return hashText(checksum(std::as_bytes(std::span(store.hierarchy().nodes))));
 }
 
 std::string reportJson(const BenchReport& report) {
