@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <glm/gtc/type_precision.hpp>
 #include <vector>
 
@@ -35,11 +36,16 @@ struct NodeData {
   std::vector<std::uint32_t> colour;         ///< R | G<<8 | B<<16 | 255<<24; empty when the store has none
   std::vector<std::uint16_t> intensity;      ///< empty when the store has none
   std::vector<std::uint8_t> classification;  ///< empty when the store has none
+  std::vector<std::uint8_t> returnNumber;    ///< empty when the store has none or it was not asked for
+  std::vector<std::uint32_t> normal;         ///< likewise; see packNormal()
 
   std::uint32_t pointCount() const { return static_cast<std::uint32_t>(position[0].size()); }
   int loadedPlanes() const { return position[1].empty() ? 1 : position[2].empty() ? 2 : 3; }
   std::uint64_t bytes() const;  ///< of memory held
 };
+
+/// x | y<<8 | z<<16 as signed bytes, 127 for 1; 0 for a vector that is zero or not finite. Any length is taken.
+std::uint32_t packNormal(const glm::vec3& normal);
 
 /// The position of one point in double precision, as every rasterizer must place it.
 glm::dvec3 pointPosition(const NodeData& node, const Batch& batch, std::uint32_t point, Precision precision);

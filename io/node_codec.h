@@ -31,7 +31,8 @@ EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info);
 /// How many leading bytes of the payload a drawing at `precision` has to fetch.
 std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
 
-/// Decodes the drawing planes out of the first drawBytes(record, precision) bytes of the payload.
+/// Decodes the drawing planes out of the first drawBytes(record, precision) bytes of the payload; return numbers and
+/// normals too where more bytes are at hand and hold them.
 /// Trusts nothing: throws Error (`points.bin: node r042: block checksum mismatch`) for anything that does not fit.
 /// `out` is replaced; the memory it holds is used again. After an exception it holds nothing of use.
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,

@@ -42,6 +42,16 @@ class PayloadReader {
     return std::any_of(planes_.begin(), planes_.end(), [id](const PayloadPlane& p) { return p.id == id; });
   }
 
+  /// False as well where the bytes at hand end before the plane does.
+  bool holds(std::uint16_t id) const {
+    std::size_t end = record_.headBytes;
+    for (const PayloadPlane& p : planes_) {
+      end += p.storedBytes;
+      if (p.id == id) return end <= payload_.size();
+    }
+    return false;
+  }
+
   /// The decoded bytes of a plane, with 8 readable bytes behind them; valid until the next call.
   std::span<const std::byte> plane(std::uint16_t id, std::size_t rawBytes, std::size_t elementBytes) {
     std::size_t offset = record_.headBytes;
@@ -216,6 +226,32 @@ void describeBatches(const std::vector<PayloadBatch>& batches, const StoreInfo& 
   }
 }
 
+/// What only some ways of drawing look at, where the bytes at hand hold it.
+void decodeShown(PayloadReader& payload, const StoreInfo& info, NodeData& out) {
+  const std::size_t count = payload.pointCount();
+  out.returnNumber.clear();
+  out.normal.clear();
+  const auto planeOf = [&](std::string_view name) {
+    return static_cast<std::uint16_t>(kFirstAttributePlane + std::max(info.layout.find(name), 0));
+  };
+  if (info.layout.find(attribute::kReturnNumber) >= 0 && payload.holds(planeOf(attribute::kReturnNumber))) {
+    const auto raw = payload.plane(planeOf(attribute::kReturnNumber), count, 1);
+    out.returnNumber.resize(count);
+    std::memcpy(out.returnNumber.data(), raw.data(), count);
+  }
+  if (info.layout.find(attribute::kNormal) >= 0 && payload.holds(planeOf(attribute::kNormal))) {
+    const auto raw = payload.plane(planeOf(attribute::kNormal), count * 12, 12);
+    out.normal.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::byte bytes[12];
+      for (std::size_t b = 0; b < 12; ++b) bytes[b] = raw[b * count + i];
+      float xyz[3];
+      std::memcpy(xyz, bytes, sizeof xyz);
+      out.normal[i] = packNormal({xyz[0], xyz[1], xyz[2]});
+    }
+  }
+}
+
 }  // namespace
 
 std::uint32_t drawBytes(const NodeRecord& record, Precision precision) {
@@ -256,6 +292,7 @@ void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span
     out.classification.resize(count);
     std::memcpy(out.classification.data(), raw.data(), count);
   }
+  decodeShown(payload, info, out);
 }
 
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> bytes) {

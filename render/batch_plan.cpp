@@ -3,21 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "render/grid_transform.h"
 
 namespace strata {
 namespace {
 
 constexpr double kPixelsAt10Bits = 500.0;
 constexpr double kPixelsAt20Bits = 500.0 * 1024.0;
-constexpr double kLargestFloat = 1e30;  ///< beyond it products of floats may overflow
+constexpr double kSurePx = 0.05;  ///< more than float arithmetic moves a point
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-bool usable(const glm::vec4& row) {
-  for (int i = 0; i < 4; ++i)
-    if (!(std::abs(static_cast<double>(row[i])) < kLargestFloat)) return false;
-  return true;
-}
 
 glm::dvec3 boxMinFromEye(const ViewConstants& constants, const NodeData& node, const Batch& batch) {
   return (node.origin - constants.view.eye) + batch.boxMin;
@@ -73,57 +70,113 @@ Precision batchPrecision(const ViewConstants& c, const NodeData& node, const Bat
   return static_cast<Precision>(std::min({wanted, filled, node.loadedPlanes()}));
 }
 
-BatchTransform batchTransform(const ViewConstants& c, const NodeData& node, const Batch& batch, Precision precision) {
-  const int bits = 10 * static_cast<int>(precision);
-  const double cells = static_cast<double>(1u << bits);
-  const glm::dvec3 lo = boxMinFromEye(c, node, batch);
-  BatchTransform t;
-  glm::dvec3 cell, rest;
-  for (int axis = 0; axis < 3; ++axis) {
-    cell[axis] = batch.boxSize[axis] / cells;
-    const double half = batch.bits[axis] > bits ? 0.5 : 0.0;
-    const double first = lo[axis] + half * cell[axis];  // of X = 0
-    double eyeCell = cell[axis] > 0.0 ? std::round(-first / cell[axis]) : 0.0;
-    eyeCell = std::clamp(eyeCell, -cells, 2.0 * cells);  // X - E then fits 32 bits
-    t.eyeCell[axis] = static_cast<int>(static_cast<std::uint32_t>(static_cast<std::int64_t>(eyeCell)));
-    rest[axis] = first + eyeCell * cell[axis];
+bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
+  if (!gaze.on || node.batches.empty()) return true;
+  glm::dvec3 lo(std::numeric_limits<double>::infinity()), hi(-std::numeric_limits<double>::infinity());
+  for (const Batch& batch : node.batches) {
+    lo = glm::min(lo, boxMinFromEye(c, node, batch));
+    hi = glm::max(hi, boxMinFromEye(c, node, batch) + batch.boxSize);
   }
-  const auto fold = [&](const glm::dvec4& row) {
-    const glm::dvec3 direction(row);
-    return glm::vec4(glm::dvec4(direction * cell, glm::dot(direction, rest) + row.w));
-  };
-  t.x = fold(c.rowX);
-  t.y = fold(c.rowY);
-  t.depth = fold(c.projection.rowDepth);
-  return t;
+  const glm::dvec4 centre(0.5 * (lo + hi), 1.0);
+  const double radius = 0.5 * glm::distance(lo, hi);
+  const double depth = glm::dot(c.projection.rowDepth, centre);
+  if (depth - radius <= c.view.nearPlane) return true;
+  const double w = glm::dot(c.projection.rowW, centre);
+  const glm::dvec2 place(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
+  const glm::dvec2 at = glm::dvec2(gaze.at) * glm::dvec2(c.view.width, c.view.height);
+  const double away = glm::distance(place, at) / std::max(c.view.height, 1);
+  const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
+  const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;
+  const glm::dvec3 size = hi - lo;
+  return std::max({size.x, size.y, size.z}) * c.pixelsPerMetre / (c.view.orthographic ? 1.0 : depth) >= least;
 }
 
-void planBatches(const RenderList& list, const View& view, DrawPlan& plan) {
+namespace {
+
+enum class Side { outside, partly, inside };
+
+/// Of a box given by its corners, both relative to the eye, against planes that point inwards.
+template <typename Planes>
+Side sideOf(const Planes& planes, const glm::dvec3& lo, const glm::dvec3& hi) {
+  Side side = Side::inside;
+  for (const glm::dvec4& plane : planes) {
+    double nearest = plane.w, farthest = plane.w;
+    for (int axis = 0; axis < 3; ++axis) {
+      nearest += std::min(plane[axis] * lo[axis], plane[axis] * hi[axis]);
+      farthest += std::max(plane[axis] * lo[axis], plane[axis] * hi[axis]);
+    }
+    if (farthest < 0.0) return Side::outside;
+    if (!(nearest >= 0.0)) side = Side::partly;
+  }
+  return side;
+}
+
+/// The clip region relative to the eye.
+struct EyeClip {
+  EyeClip(const Clip& clip, const glm::dvec3& eye) {
+    for (const Box& box : clip.boxes) boxes.push_back({box.min - eye, box.max - eye});
+    for (const glm::dvec4& plane : clip.planes)
+      planes.emplace_back(glm::dvec3(plane), glm::dot(plane, glm::dvec4(eye, 1.0)));
+  }
+  Side side(const glm::dvec3& lo, const glm::dvec3& hi) const {
+    Side inBoxes = boxes.empty() ? Side::inside : Side::outside;
+    for (const Box& box : boxes) {
+      if (box.contains(lo) && box.contains(hi)) inBoxes = Side::inside;
+      const bool apart = glm::any(glm::lessThan(hi, box.min)) || glm::any(glm::greaterThan(lo, box.max));
+      if (!apart && inBoxes == Side::outside) inBoxes = Side::partly;
+    }
+    return std::min(inBoxes, sideOf(planes, lo, hi));
+  }
+
+  std::vector<Box> boxes;
+  std::vector<glm::dvec4> planes;
+};
+
+/// The image and the near plane, smaller by what rounding may move a point.
+std::array<glm::dvec4, 5> surePlanes(const ViewConstants& c) {
+  const Projection& p = c.projection;
+  const glm::dvec4 nearest(0.0, 0.0, 0.0, 1.0001 * c.view.nearPlane);
+  return {p.rowX - p.rowW * kSurePx, p.rowW * (c.view.width - kSurePx) - p.rowX, p.rowY - p.rowW * kSurePx,
+          p.rowW * (c.view.height - kSurePx) - p.rowY, p.rowDepth - nearest};
+}
+
+}  // namespace
+
+void planBatches(const RenderList& list, const View& view, const DrawOptions& options, DrawPlan& plan) {
   plan.constants = viewConstants(view);
+  plan.grids.clear();
   plan.batches.clear();
   plan.pointCount = 0;
   plan.batchesCulled = 0;
   std::fill(std::begin(plan.batchesAt), std::end(plan.batchesAt), 0u);
   if (!plan.constants.drawable) return;
+  GridFinder finder(plan.constants, options.clip, plan.grids);
+  const EyeClip clip(options.clip, view.eye);
+  const std::array<glm::dvec4, 5> sure = surePlanes(plan.constants);
   std::uint32_t firstId = 0;
   for (std::size_t i = 0; i < list.items.size(); firstId += list.items[i++].pointCount) {
     const NodeData* node = list.items[i].node.get();
     if (node == nullptr) continue;
     const std::uint32_t prefix = std::min(list.items[i].pointCount, node->pointCount());
+    const bool kept = gazeKeeps(plan.constants, options.gaze, *node);
     for (const Batch& batch : node->batches) {
       if (batch.firstPoint >= prefix) break;
       PlannedBatch planned;
       planned.pointCount = std::min(batch.pointCount, prefix - batch.firstPoint);
       if (planned.pointCount == 0) continue;
-      const glm::dvec3 lo = boxMinFromEye(plan.constants, *node, batch);
+      const glm::dvec3 lo = boxMinFromEye(plan.constants, *node, batch), hi = lo + batch.boxSize;
       planned.precision = batchPrecision(plan.constants, *node, batch);
-      planned.transform = batchTransform(plan.constants, *node, batch, planned.precision);
-      const BatchTransform& t = planned.transform;
-      if (!boxInFrustum(plan.constants.planes, lo, lo + batch.boxSize) || !usable(t.x) || !usable(t.y) ||
-          !usable(t.depth)) {
+      const Side clipSide = clip.side(lo, hi);
+      std::optional<GridPlace> place;
+      if (kept && clipSide != Side::outside && boxInFrustum(plan.constants.planes, lo, hi))
+        place = finder.place(*node, batch, planned.precision);
+      if (!place) {
         ++plan.batchesCulled;
         continue;
       }
+      planned.place = *place;
+      planned.clipped = clipSide == Side::partly;
+      planned.inside = sideOf(sure, lo, hi) == Side::inside;
       planned.node = node;
       planned.item = static_cast<std::uint32_t>(i);
       planned.firstPoint = batch.firstPoint;

@@ -50,7 +50,21 @@ constexpr std::array<Colour, 8> kLevels{{{230, 80, 70},
                                          {150, 100, 210},
                                          {220, 120, 180}}};
 
+constexpr std::array<Colour, 3> kPrecisions{{{90, 190, 90}, {240, 200, 60}, {225, 70, 60}}};
+
+constexpr std::array<Colour, 5> kHeat{{{20, 40, 160}, {30, 170, 220}, {60, 200, 80}, {245, 215, 50}, {215, 30, 30}}};
+
 std::uint32_t pack(Colour colour) { return packColour(colour.red, colour.green, colour.blue); }
+
+template <std::size_t kSteps>
+std::uint32_t between(const std::array<Colour, kSteps>& map, double t) {
+  const double place = (t > 0.0 ? std::min(t, 1.0) : 0.0) * (kSteps - 1);
+  const std::size_t below = std::min(static_cast<std::size_t>(place), kSteps - 2);
+  const double fraction = place - static_cast<double>(below);
+  const Colour a = map[below], b = map[below + 1];
+  const auto mix = [&](int from, int to) { return static_cast<int>(std::lround(from + (to - from) * fraction)); };
+  return packColour(mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue));
+}
 
 }  // namespace
 
@@ -59,20 +73,31 @@ std::uint32_t packColour(int red, int green, int blue) {
          static_cast<std::uint32_t>(blue) << 16 | 0xff000000u;
 }
 
-std::uint32_t elevationColour(double t) {
-  const double place = (t > 0.0 ? std::min(t, 1.0) : 0.0) * (kElevation.size() - 1);
-  const std::size_t below = std::min(static_cast<std::size_t>(place), kElevation.size() - 2);
-  const double fraction = place - static_cast<double>(below);
-  const Colour a = kElevation[below], b = kElevation[below + 1];
-  const auto mix = [&](int from, int to) { return static_cast<int>(std::lround(from + (to - from) * fraction)); };
-  return packColour(mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue));
-}
+std::uint32_t elevationColour(double t) { return between(kElevation, t); }
 
 std::uint32_t classificationColour(std::uint8_t classification) {
   return classification < kClasses.size() ? pack(kClasses[classification]) : missingColour();
 }
 
 std::uint32_t levelColour(int level) { return pack(kLevels[static_cast<std::size_t>(level) % kLevels.size()]); }
+
+std::uint32_t returnColour(int returnNumber) {
+  return pack(kLevels[static_cast<std::size_t>(std::max(returnNumber - 1, 0)) % kLevels.size()]);
+}
+
+std::uint32_t normalColour(std::uint32_t normal) {
+  const auto channel = [normal](int shift) {
+    const int value = static_cast<std::int8_t>(normal >> shift & 255u);
+    return std::clamp((value + 127) * 255 / 254, 0, 255);
+  };
+  return normal == 0 ? missingColour() : packColour(channel(0), channel(8), channel(16));
+}
+
+std::uint32_t precisionColour(int planes) {
+  return pack(kPrecisions[static_cast<std::size_t>(std::clamp(planes, 1, 3) - 1)]);
+}
+
+std::uint32_t heatColour(double t) { return between(kHeat, t); }
 
 std::uint32_t missingColour() { return packColour(200, 200, 200); }
 

@@ -30,7 +30,7 @@ class Compute32Rasterizer final : public Rasterizer {
   DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) override {
     Stopwatch watch;
     scene_.makeCurrent();
-    DrawStats stats = scene_.prepare(list, view);
+    DrawStats stats = scene_.prepare(list, view, options);
     stats.uploadMs = watch.lapMs();
     buffer_.width = std::max(view.width, 0);
     buffer_.height = std::max(view.height, 0);

@@ -46,13 +46,7 @@ template <int kPlanes>
 class Projector {
  public:
   Projector(const BatchTransform& t, const Viewport& v)
-      : x_(t.x),
-        y_(t.y),
-        depth_(t.depth),
-        eyeX_(hn::Set(kInt, t.eyeCell.x)),
-        eyeY_(hn::Set(kInt, t.eyeCell.y)),
-        eyeZ_(hn::Set(kInt, t.eyeCell.z)),
-        view_(v) {}
+      : x_(t.x), y_(t.y), depth_(t.depth), offset_(t.offset), shift_(t.shift), view_(v) {}
 
   /// Appends the points of `lanes` that are in the image; returns their number.
   HWY_INLINE std::size_t project(const std::uint32_t* const planes[3], std::size_t at, Mask lanes,
@@ -61,9 +55,7 @@ class Projector {
     Cells cells = append({zero, zero, zero}, hn::LoadU(kWord, planes[0] + at));
     if constexpr (kPlanes > 1) cells = append(cells, hn::LoadU(kWord, planes[1] + at));
     if constexpr (kPlanes > 2) cells = append(cells, hn::LoadU(kWord, planes[2] + at));
-    const Floats cx = hn::ConvertTo(kFloat, hn::Sub(hn::BitCast(kInt, cells.x), eyeX_));
-    const Floats cy = hn::ConvertTo(kFloat, hn::Sub(hn::BitCast(kInt, cells.y), eyeY_));
-    const Floats cz = hn::ConvertTo(kFloat, hn::Sub(hn::BitCast(kInt, cells.z), eyeZ_));
+    const Floats cx = steps(cells.x, 0), cy = steps(cells.y, 1), cz = steps(cells.z, 2);
 
     const Floats one = hn::Set(kFloat, 1.0f);
     const Floats depth = depth_(cx, cy, cz);
@@ -90,8 +82,14 @@ class Projector {
   }
 
  private:
+  HWY_INLINE Floats steps(Words cells, int axis) const {
+    const Words shifted =
+        shift_[axis] < 0 ? hn::ShiftRightSame(cells, -shift_[axis]) : hn::ShiftLeftSame(cells, shift_[axis]);
+    return hn::ConvertTo(kFloat, hn::Add(hn::BitCast(kInt, shifted), hn::Set(kInt, offset_[axis])));
+  }
+
   Row x_, y_, depth_;
-  hn::Vec<decltype(kInt)> eyeX_, eyeY_, eyeZ_;
+  glm::ivec3 offset_, shift_;
   const Viewport& view_;
 };
 

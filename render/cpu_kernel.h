@@ -16,6 +16,12 @@ struct ProjectedBlock {
   std::uint32_t id[kPoints + kPadding];
 };
 
+/// Where the points of a batch go: its rows and how its coordinates become grid steps.
+struct BatchTransform {
+  glm::vec4 x, y, depth;
+  glm::ivec3 offset, shift;
+};
+
 /// Projects `count` points, at most ProjectedBlock::kPoints. `planes[p]` are the words of plane p, for as many planes
 /// as `precision` needs. Returns how many points were written. Uses the best instruction set of the machine.
 std::size_t projectPoints(const BatchTransform& transform, const Viewport& viewport,

@@ -22,7 +22,10 @@ void lower(PackedPixel& target, PackedPixel value) {
   }
 }
 
-void drawBatch(const PlannedBatch& batch, const Viewport& view, std::vector<PackedPixel>& pixels) {
+void drawBatch(const DrawPlan& plan, const PlannedBatch& batch, const Viewport& view,
+               std::vector<PackedPixel>& pixels) {
+  const GridTransform& grid = plan.grids[batch.place.grid];
+  const BatchTransform transform{grid.x, grid.y, grid.depth, batch.place.offset, batch.place.shift};
   ProjectedBlock block;
   for (std::uint32_t done = 0; done < batch.pointCount; done += ProjectedBlock::kPoints) {
     const std::size_t count = std::min<std::size_t>(batch.pointCount - done, ProjectedBlock::kPoints);
@@ -30,7 +33,7 @@ void drawBatch(const PlannedBatch& batch, const Viewport& view, std::vector<Pack
     for (int p = 0; p < static_cast<int>(batch.precision); ++p)
       planes[p] = batch.node->position[p].data() + batch.firstPoint + done;
     const std::size_t inside =
-        projectPoints(batch.transform, view, planes, batch.precision, count, batch.firstId + done, block);
+        projectPoints(transform, view, planes, batch.precision, count, batch.firstId + done, block);
     for (std::size_t i = 0; i < inside; ++i) lower(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
   }
 }
@@ -41,11 +44,11 @@ class CpuRasterizer final : public Rasterizer {
 
   DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) override {
     Stopwatch watch;
-    planBatches(list, view, plan_);
+    planBatches(list, view, options, plan_);
     clear(view);
     const Viewport port = viewport(plan_.constants);
     pool_.parallelFor(plan_.batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) drawBatch(plan_.batches[i], port, buffer_.pixels);
+      for (std::size_t i = begin; i < end; ++i) drawBatch(plan_, plan_.batches[i], port, buffer_.pixels);
     });
     DrawStats stats = planStats(plan_);
     stats.drawMs = watch.lapMs();

@@ -13,12 +13,14 @@ std::unique_ptr<GlContext> currentOrThrow(std::unique_ptr<GlContext> context) {
   return context;
 }
 
-shader::BatchRecord makeRecord(const PlannedBatch& batch, const GpuNode& place) {
+shader::BatchRecord makeRecord(const DrawPlan& plan, const PlannedBatch& batch, const GpuNode& place) {
   shader::BatchRecord record;
-  record.x = batch.transform.x;
-  record.y = batch.transform.y;
-  record.depth = batch.transform.depth;
-  record.eyeCell = glm::ivec4(batch.transform.eyeCell, static_cast<int>(batch.precision));
+  const GridTransform& grid = plan.grids[batch.place.grid];
+  record.x = grid.x;
+  record.y = grid.y;
+  record.depth = grid.depth;
+  record.offset = glm::ivec4(batch.place.offset, static_cast<int>(batch.precision));
+  record.shift = glm::ivec4(batch.place.shift, 0);
   record.firstWord = place.firstWord + batch.firstPoint;
   record.planeStride = place.planeStride;
   record.pointCount = batch.pointCount;
@@ -35,8 +37,8 @@ GlScene::GlScene(std::unique_ptr<GlContext> context, const RasterizerOptions& op
       nodes_(gl_, options.gpuBytes, options.uploadBytesPerFrame),
       recordBuffer_(gl_, 0, gl::kStreamDraw) {}
 
-DrawStats GlScene::prepare(const RenderList& list, const View& view) {
-  planBatches(list, view, plan_);
+DrawStats GlScene::prepare(const RenderList& list, const View& view, const DrawOptions& options) {
+  planBatches(list, view, options, plan_);
   nodes_.beginFrame(list);
   DrawStats stats = planStats(plan_);
   stats.pointsDrawn = 0;
@@ -52,7 +54,7 @@ DrawStats GlScene::prepare(const RenderList& list, const View& view) {
     for (; i < plan_.batches.size() && plan_.batches[i].item == item; ++i) {
       if (!place) continue;
       const PlannedBatch& batch = plan_.batches[i];
-      byPage[place->page].push_back(makeRecord(batch, *place));
+      byPage[place->page].push_back(makeRecord(plan_, batch, *place));
       stats.pointsDrawn += batch.pointCount;
       ++stats.batchesDrawn;
       ++stats.batchesAt[static_cast<int>(batch.precision) - 1];

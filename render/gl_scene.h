@@ -29,7 +29,7 @@ class GlScene {
   const std::string& renderer() const { return renderer_; }
 
   /// Plans the frame and uploads what it needs within the budgets. Fills all stats but the times of draw and resolve.
-  DrawStats prepare(const RenderList& list, const View& view);
+  DrawStats prepare(const RenderList& list, const View& view, const DrawOptions& options);
   /// Of the frame that was prepared.
   const std::vector<PageRun>& runs() const { return runs_; }
   const std::vector<shader::BatchRecord>& records() const { return records_; }

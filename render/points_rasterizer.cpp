@@ -99,7 +99,7 @@ class PointsRasterizer final : public Rasterizer {
   DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) override {
     Stopwatch watch;
     scene_.makeCurrent();
-    DrawStats stats = scene_.prepare(list, view);
+    DrawStats stats = scene_.prepare(list, view, options);
     writeCommands();
     stats.uploadMs = watch.lapMs();
     buffer_.width = std::max(view.width, 0);

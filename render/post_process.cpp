@@ -78,6 +78,70 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
   });
 }
 
+FillSizes::FillSizes(const DrawOptions& options, const View& view)
+    : least_(std::clamp(options.fill, 1, DrawOptions::kLargestFill) | 1),
+      gaze_(options.gaze.on),
+      atX_(options.gaze.at.x * static_cast<float>(view.width)),
+      atY_(options.gaze.at.y * static_cast<float>(view.height)),
+      third_(static_cast<float>(std::max(view.height, 1)) / 3.0f) {}
+
+int FillSizes::at(int x, int y) const {
+  if (!gaze_) return least_;
+  const float away = std::hypot(static_cast<float>(x) + 0.5f - atX_, static_cast<float>(y) + 0.5f - atY_);
+  return std::max(least_, away < third_ ? 3 : away < 2.0f * third_ ? 5 : 7);
+}
+
+namespace {
+
+struct Step {
+  int x, y;
+};
+
+/// The places of the largest window by their distance from its middle.
+std::vector<Step> stepsByDistance() {
+  std::vector<Step> steps;
+  const int reach = DrawOptions::kLargestFill / 2;
+  for (int y = -reach; y <= reach; ++y)
+    for (int x = -reach; x <= reach; ++x) steps.push_back({x, y});
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y; });
+  return steps;
+}
+
+}  // namespace
+
+void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool) {
+  if (sizes.none()) return;
+  const std::vector<Step> steps = stepsByDistance();
+  const std::vector<PackedPixel> from = buffer.pixels;
+  const auto at = [&](int x, int y) {
+    return from[static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.width) + static_cast<std::size_t>(x)];
+  };
+  const auto filled = [&](int x, int y) {
+    const int reach = sizes.at(x, y) / 2;
+    const int left = std::max(x - reach, 0), right = std::min(x + reach, buffer.width - 1);
+    const int top = std::max(y - reach, 0), bottom = std::min(y + reach, buffer.height - 1);
+    PackedPixel front = kEmptyPixel;
+    for (int v = top; v <= bottom; ++v)
+      for (int u = left; u <= right; ++u) front = std::min(front, at(u, v));
+    const float deepest = pixelDepth(front) * DrawOptions::kBlendDepth;
+    if (front == kEmptyPixel || pixelDepth(at(x, y)) <= deepest) return at(x, y);
+    for (const Step& step : steps) {
+      const int u = x + step.x, v = y + step.y;
+      if (u < left || u > right || v < top || v > bottom) continue;
+      if (pixelDepth(at(u, v)) <= deepest) return at(u, v);
+    }
+    return at(x, y);
+  };
+  pool.parallelFor(static_cast<std::size_t>(std::max(buffer.height, 0)), kRowsAtOnce,
+                   [&](std::size_t begin, std::size_t end) {
+                     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+                       for (int x = 0; x < buffer.width; ++x)
+                         buffer.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.width) +
+                                       static_cast<std::size_t>(x)] = filled(x, y);
+                   });
+}
+
 void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, const ThreadPool& pool) {
   const auto width = static_cast<std::size_t>(frame.width);
   const auto height = static_cast<std::size_t>(frame.height);

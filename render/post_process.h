@@ -31,6 +31,26 @@ class PointSizes {
   bool perspective_ = true;
 };
 
+/// How large the window of fillHoles() is at a pixel: 1, 3, 5 or 7.
+class FillSizes {
+ public:
+  /// With DrawOptions::gaze at least 3 near the gaze, 5 and 7 farther out (Schütz 2022, 3.6), in its three parts.
+  FillSizes(const DrawOptions& options, const View& view);
+
+  int at(int x, int y) const;
+  bool none() const { return least_ <= 1 && !gaze_; }
+
+ private:
+  int least_ = 1;
+  bool gaze_ = false;
+  float atX_ = 0.0f, atY_ = 0.0f, third_ = 1.0f;  ///< pixels
+};
+
+/// Depth-aware dilation: a pixel that is empty, or lies more than kBlendDepth behind the nearest pixel of the window
+/// around it, takes that of the pixels not so far behind which is closest in the picture (of equally close ones the
+/// upper, then the left). What is in front stays as it is.
+void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool);
+
 /// Lets every point cover a square of pixels: a pixel takes the nearest of the points that cover it.
 /// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be
 /// done one after the other, since a nearer point is never the smaller one.

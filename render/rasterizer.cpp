@@ -1,5 +1,7 @@
 #include "render/rasterizer.h"
 
+#include <algorithm>
+
 #include "core/error.h"
 #include "core/log.h"
 #include "render/compute32_rasterizer.h"
@@ -22,14 +24,39 @@ std::unique_ptr<Rasterizer> createFastest(const RasterizerOptions& options, std:
   }
 }
 
+void add(const DrawStats& one, DrawStats& sum) {
+  sum.pointsDrawn += one.pointsDrawn;
+  sum.batchesDrawn += one.batchesDrawn;
+  sum.batchesCulled += one.batchesCulled;
+  for (int p = 0; p < 3; ++p) sum.batchesAt[p] += one.batchesAt[p];
+  sum.nodesNotUploaded = std::max(sum.nodesNotUploaded, one.nodesNotUploaded);
+  sum.bytesUploaded += one.bytesUploaded;
+  sum.gpuBytes = std::max(sum.gpuBytes, one.gpuBytes);
+  sum.lockRetries += one.lockRetries;
+  sum.uploadMs += one.uploadMs;
+  sum.drawMs += one.drawMs;
+  sum.resolveMs += one.resolveMs;
+}
+
 }  // namespace
+
+DrawStats Rasterizer::drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
+                                std::span<Frame> frames) {
+  DrawStats sum;
+  for (std::size_t i = 0; i < std::min(views.size(), frames.size()); ++i)
+    add(draw(list, views[i], options, frames[i]), sum);
+  return sum;
+}
 
 Backend parseBackend(std::string_view name) {
   if (name == "auto") return Backend::automatic;
   if (name == "cpu") return Backend::cpu;
   if (name == "compute32") return Backend::compute32;
+  if (name == "compute64") return Backend::compute64;
+  if (name == "compute_lock") return Backend::computeLock;
   if (name == "points") return Backend::points;
-  throw UsageError("backend: unknown name, found " + std::string(name) + " (expected auto, cpu, compute32 or points)");
+  throw UsageError("backend: unknown name, found " + std::string(name) +
+                   " (expected auto, cpu, compute32, compute64, compute_lock or points)");
 }
 
 std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
@@ -41,6 +68,9 @@ std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOp
       return createCpuRasterizer(options);
     case Backend::compute32:
       return createCompute32Rasterizer(std::move(context), options);
+    case Backend::compute64:
+    case Backend::computeLock:
+      throw Error("backend", "not in this build, found compute64 or compute_lock (expected cpu, compute32 or points)");
     case Backend::points:
       return createPointsRasterizer(std::move(context), options);
   }

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -18,26 +19,35 @@ struct DrawStats {
   std::uint32_t batchesAt[3] = {0, 0, 0};  ///< by precision: 10, 20, 30 bits
   std::uint32_t nodesNotUploaded = 0;      ///< left out of this frame: over the upload budget or out of GPU memory
   std::uint64_t bytesUploaded = 0;
-  std::uint64_t gpuBytes = 0;  ///< held by node data on the GPU; 0 for cpu
+  std::uint64_t gpuBytes = 0;     ///< held by node data on the GPU; 0 for cpu
+  std::uint64_t lockRetries = 0;  ///< compute_lock: turns of its loops beyond the first
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
 };
 
 /// Turns a RenderList into pixels. One thread uses it: the render thread, which owns the GL context if there is one.
 /// All implementations give the picture of the oracle (tests/support/oracle.h): for each pixel the point with the
-/// smallest depth (compared as 32-bit float; ties go to the lower id) wins. Drawing does not throw.
+/// smallest depth wins, compared as 32-bit float; equal floats go to the lower id. Points of one store that are placed
+/// at one position have equal floats, always (batch_plan.h), so which of them is seen depends on their ids alone.
+/// Drawing does not throw.
 class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
   /// Draws `list` as seen by `view` (which may be newer than the list's). `frame` is resized to the view.
   virtual DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) = 0;
+  /// One picture of `list` for each view, frames[i] as draw() gives for views[i]; as many frames as views. The sum of
+  /// the stats. This one draws them one after the other; an implementation may read each point once for all views
+  /// (Schütz 2022, 3.6).
+  virtual DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
+                              std::span<Frame> frames);
   virtual std::string_view name() const = 0;
   /// "llvmpipe (LLVM 15.0.6, 256 bits)", "2 threads"; for reports.
   virtual std::string device() const = 0;
 };
 
-enum class Backend : std::uint8_t { automatic, cpu, compute32, points };
+enum class Backend : std::uint8_t { automatic, cpu, compute32, compute64, computeLock, points };
 
-/// "auto", "cpu", "compute32", "points". Throws UsageError, naming the choices, for anything else.
+/// "auto", "cpu", "compute32", "compute64", "compute_lock", "points". Throws UsageError, naming the choices, for
+/// anything else.
 Backend parseBackend(std::string_view name);
 
 struct RasterizerOptions {

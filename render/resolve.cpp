@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/batch_plan.h"
 #include "render/colour_map.h"
+#include "render/point_colour.h"
 #include "render/post_process.h"
 
 namespace strata {
@@ -11,6 +13,7 @@ namespace {
 
 constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 15;  ///< by one thread
 constexpr std::size_t kPixelsAhead = 32;
+constexpr std::size_t kRowsAtOnce = 16;
 
 /// Where a point lies.
 struct PointPlace {
@@ -46,78 +49,123 @@ class PointLookup {
   std::vector<std::uint32_t> itemAt_;     ///< of the first id of each block; the last item at the end
 };
 
-/// Points of one pixel row are scattered in memory; asking for some pixels' attributes ahead hides that.
-void prefetch(const PointPlace& place, ColourMode mode) {
-  const NodeData& node = *place.node;
-  if (mode == ColourMode::rgb && !node.colour.empty()) __builtin_prefetch(&node.colour[place.index]);
-  if (mode == ColourMode::intensity && !node.intensity.empty()) __builtin_prefetch(&node.intensity[place.index]);
-  if (mode == ColourMode::classification && !node.classification.empty())
-    __builtin_prefetch(&node.classification[place.index]);
-  if (mode == ColourMode::elevation) __builtin_prefetch(&node.position[0][place.index]);
+/// How densely the pixels of an overdraw picture are covered: the count that gets the last colour.
+std::uint32_t largestCount(const std::vector<std::uint32_t>& counts) {
+  return counts.empty() ? 1 : std::max(*std::max_element(counts.begin(), counts.end()), 2u);
 }
 
-double elevation(const NodeData& node, std::uint32_t point) {
-  const auto after = std::upper_bound(node.batches.begin(), node.batches.end(), point,
-                                      [](std::uint32_t p, const Batch& batch) { return p < batch.firstPoint; });
-  return pointPosition(node, *(after - 1), point, static_cast<Precision>(node.loadedPlanes())).z;
+std::uint32_t meanColour(const ColourSum& sum) {
+  const auto mean = [&sum](std::uint32_t total) { return static_cast<int>((total + sum.count / 2) / sum.count); };
+  return packColour(mean(sum.red), mean(sum.green), mean(sum.blue));
 }
 
-std::uint32_t pointColour(const NodeData& node, std::uint32_t point, const DrawOptions& options) {
-  switch (options.colour) {
-    case ColourMode::rgb:
-      return node.colour.empty() ? missingColour() : node.colour[point];
-    case ColourMode::intensity: {
-      if (node.intensity.empty()) return missingColour();
-      const float span = std::max(options.intensityRange.y - options.intensityRange.x, 1e-6f);
-      const float t = (static_cast<float>(node.intensity[point]) - options.intensityRange.x) / span;
-      // The square root: what scanners record spans decades, and most of a scan is in the dark tenth of the range.
-      const int grey = static_cast<int>(std::sqrt(std::clamp(t, 0.0f, 1.0f)) * 255.0f + 0.5f);
-      return packColour(grey, grey, grey);
-    }
-    case ColourMode::elevation: {
-      const double span = std::max(options.elevationRange.y - options.elevationRange.x, 1e-9);
-      return elevationColour((elevation(node, point) - options.elevationRange.x) / span);
-    }
-    case ColourMode::classification:
-      return node.classification.empty() ? missingColour() : classificationColour(node.classification[point]);
-    case ColourMode::level:
-      return levelColour(node.key.level());
+/// Gives each pixel of the buffer its own colour, in no light and one pixel wide.
+class Colouring {
+ public:
+  Colouring(const RenderList& list, const View& view, const DrawOptions& options, const VisibilityBuffer& buffer)
+      : lookup_(list), constants_(viewConstants(view)), options_(options), buffer_(buffer) {
+    const bool overdraw = options.colour == ColourMode::overdraw && buffer.counts.size() == buffer.pixels.size();
+    if (overdraw) largestCount_ = largestCount(buffer.counts);
+    blended_ = !overdraw && options.shading == Shading::highQuality && buffer.sums.size() == buffer.pixels.size();
   }
-  return missingColour();
+
+  /// Pixels [begin, end), at most kPixelsAhead.
+  void colour(std::size_t begin, std::size_t end, std::uint32_t* out) const {
+    PointPlace places[kPixelsAhead];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t id = pixelId(buffer_.pixels[i]);
+      places[i - begin] = id == Frame::kNoPoint || blended_ ? PointPlace{nullptr, 0} : lookup_.find(id);
+      if (places[i - begin].node != nullptr)
+        prefetchColour(*places[i - begin].node, places[i - begin].index, options_.colour);
+    }
+    for (std::size_t i = begin; i < end; ++i) {
+      if (pixelId(buffer_.pixels[i]) == Frame::kNoPoint) continue;
+      const PointPlace& place = places[i - begin];
+      out[i - begin] = largestCount_ > 0                          ? heat(buffer_.counts[i])
+                       : blended_ && buffer_.sums[i].count > 0    ? meanColour(buffer_.sums[i])
+                       : place.node == nullptr                    ? missingColour()
+                       : options_.colour == ColourMode::precision ? precisionColour(precision(place))
+                                                                  : plain(place);
+    }
+  }
+
+ private:
+  std::uint32_t plain(const PointPlace& place) const {
+    return pointColour(*place.node, place.index, options_, Precision::low10);
+  }
+  int precision(const PointPlace& place) const {
+    return static_cast<int>(batchPrecision(constants_, *place.node, batchOf(*place.node, place.index)));
+  }
+  std::uint32_t heat(std::uint32_t count) const {
+    return heatColour(std::log2(std::max(count, 1u)) / std::log2(largestCount_));
+  }
+
+  PointLookup lookup_;
+  ViewConstants constants_;
+  const DrawOptions& options_;
+  const VisibilityBuffer& buffer_;
+  std::uint32_t largestCount_ = 0;  ///< 0: no overdraw picture
+  bool blended_ = false;
+};
+
+/// Of row y of `height`.
+std::uint32_t backgroundColour(const DrawOptions& options, int y, int height) {
+  const glm::u8vec3 above = options.background, below = options.backgroundBelow.value_or(above);
+  const double t = height > 1 ? static_cast<double>(y) / (height - 1) : 0.0;
+  const auto mix = [t](int from, int to) { return static_cast<int>(std::lround(from + (to - from) * t)); };
+  return packColour(mix(above.x, below.x), mix(above.y, below.y), mix(above.z, below.z));
+}
+
+/// Puts the pixel's own index where its id is, so that dilation moves pixels, not points.
+void pointAtPixels(VisibilityBuffer& buffer, std::vector<std::uint32_t>& ids, const ThreadPool& pool) {
+  ids.resize(buffer.pixels.size());
+  pool.parallelFor(ids.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      ids[i] = pixelId(buffer.pixels[i]);
+      if (ids[i] != Frame::kNoPoint) buffer.pixels[i] = buffer.pixels[i] >> 32 << 32 | i;
+    }
+  });
 }
 
 }  // namespace
 
 void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
                   const ThreadPool& pool, Frame& frame) {
-  const PointSizes sizes(options, view);
-  dilate(buffer, sizes, pool);
-
-  const PointLookup lookup(list);
-  const std::uint32_t background = packColour(options.background.x, options.background.y, options.background.z);
   const std::size_t count = buffer.pixels.size();
+  const auto width = static_cast<std::size_t>(buffer.width);
   frame.width = buffer.width;
   frame.height = buffer.height;
   frame.colour.resize(count);
   frame.depth.resize(count);
   frame.pointId.resize(count);
-  const auto resolvePixels = [&](std::size_t begin, std::size_t end) {
-    PointPlace places[kPixelsAhead];
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t id = pixelId(buffer.pixels[i]);
-      frame.depth[i] = pixelDepth(buffer.pixels[i]);
-      frame.pointId[i] = id;
-      places[i - begin] = id == Frame::kNoPoint ? PointPlace{nullptr, 0} : lookup.find(id);
-      if (id != Frame::kNoPoint) prefetch(places[i - begin], options.colour);
-    }
-    for (std::size_t i = begin; i < end; ++i) {
-      const PointPlace& place = places[i - begin];
-      frame.colour[i] = place.node == nullptr ? background : pointColour(*place.node, place.index, options);
-    }
-  };
+  const Colouring colouring(list, view, options, buffer);
+  const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
+  const FillSizes fills(options, view);
+  const bool grown = !sizes.alwaysOne() || !fills.none();
+  std::vector<std::uint32_t> ownColours, ownIds;
+  if (grown) ownColours.resize(count);
+  std::uint32_t* const colours = grown ? ownColours.data() : frame.colour.data();
   pool.parallelFor(count, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; i += kPixelsAhead) resolvePixels(i, std::min(i + kPixelsAhead, end));
+    for (std::size_t i = begin; i < end; i += kPixelsAhead)
+      colouring.colour(i, std::min(i + kPixelsAhead, end), colours + i);
   });
+  if (grown) {
+    pointAtPixels(buffer, ownIds, pool);
+    dilate(buffer, sizes, pool);
+    fillHoles(buffer, fills, pool);
+  }
+  pool.parallelFor(static_cast<std::size_t>(std::max(buffer.height, 0)), kRowsAtOnce,
+                   [&](std::size_t first, std::size_t end) {
+                     for (std::size_t y = first; y < end; ++y) {
+                       const std::uint32_t background = backgroundColour(options, static_cast<int>(y), buffer.height);
+                       for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
+                         const std::uint32_t from = pixelId(buffer.pixels[i]);
+                         frame.depth[i] = pixelDepth(buffer.pixels[i]);
+                         frame.pointId[i] = from == Frame::kNoPoint || !grown ? from : ownIds[from];
+                         frame.colour[i] = from == Frame::kNoPoint ? background : colours[grown ? from : i];
+                       }
+                     }
+                   });
   if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, pool);
 }
 

@@ -17,11 +17,18 @@ inline constexpr PackedPixel kEmptyPixel = packPixel(0x7f800000u, Frame::kNoPoin
 constexpr std::uint32_t pixelId(PackedPixel pixel) { return static_cast<std::uint32_t>(pixel); }
 constexpr float pixelDepth(PackedPixel pixel) { return std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32)); }
 
+/// Colours of the points near a pixel's front, for their mean. Holds 2^24 points.
+struct ColourSum {
+  std::uint32_t red = 0, green = 0, blue = 0, count = 0;
+};
+
 /// Row by row from the top.
 struct VisibilityBuffer {
   int width = 0;
   int height = 0;
-  std::vector<PackedPixel> pixels;
+  std::vector<PackedPixel> pixels{};
+  std::vector<ColourSum> sums{};        ///< Shading::highQuality: one a pixel; not read otherwise
+  std::vector<std::uint32_t> counts{};  ///< ColourMode::overdraw: points that fell on each pixel; likewise
 };
 
 }  // namespace strata

@@ -16,7 +16,11 @@ constexpr std::pair<const char*, ColourMode> kColours[] = {{"rgb", ColourMode::r
                                                            {"intensity", ColourMode::intensity},
                                                            {"elevation", ColourMode::elevation},
                                                            {"classification", ColourMode::classification},
-                                                           {"level", ColourMode::level}};
+                                                           {"level", ColourMode::level},
+                                                           {"return", ColourMode::returnNumber},
+                                                           {"normal", ColourMode::normal},
+                                                           {"precision", ColourMode::precision},
+                                                           {"overdraw", ColourMode::overdraw}};
 
 std::optional<AttributeRange> rangeOf(const StoreInfo& info, std::string_view name) {
   const int index = info.layout.find(name);

@@ -18,9 +18,13 @@ uvec3 pointCell(uint firstWord, uint planeStride, int planes, uint point) {
 
 float along(vec4 row, vec3 d) { return fma(d.x, row.x, fma(d.y, row.y, fma(d.z, row.z, row.w))); }
 
+/// Grid steps from the eye's cell: d of batch_plan.h.
+vec3 gridSteps(uvec3 cell, ivec3 offset, ivec3 shift) {
+  return vec3(ivec3(cell << uvec3(max(shift, ivec3(0))) >> uvec3(max(-shift, ivec3(0)))) + offset);
+}
+
 /// Column and row in pixels, depth in metres.
-vec3 project(vec4 rowX, vec4 rowY, vec4 rowDepth, ivec3 eyeCell, uvec3 cell) {
-  vec3 d = vec3(ivec3(cell) - eyeCell);
+vec3 project(vec4 rowX, vec4 rowY, vec4 rowDepth, vec3 d) {
   float depth = along(rowDepth, d);
   float inverse = lens.y != 0.0 ? 1.0 / depth : 1.0;
   return vec3(fma(along(rowX, d), inverse, viewport.x), fma(along(rowY, d), inverse, viewport.y), depth);

@@ -14,14 +14,15 @@ void main() {
   vec4 rowX = records[record].x;
   vec4 rowY = records[record].y;
   vec4 rowDepth = records[record].depth;
-  ivec4 eyeCell = records[record].eyeCell;
+  ivec4 offset = records[record].offset;
+  ivec3 shift = records[record].shift.xyz;
   uint firstWord = records[record].firstWord;
   uint planeStride = records[record].planeStride;
   uint pointCount = records[record].pointCount;
   uint firstId = records[record].firstId;
   for (uint point = gl_LocalInvocationID.x; point < pointCount; point += STRATA_GROUP_SIZE) {
-    uvec3 cell = pointCell(firstWord, planeStride, eyeCell.w, point);
-    vec3 place = project(rowX, rowY, rowDepth, eyeCell.xyz, cell);
+    uvec3 cell = pointCell(firstWord, planeStride, offset.w, point);
+    vec3 place = project(rowX, rowY, rowDepth, gridSteps(cell, offset.xyz, shift));
     if (!inImage(place)) continue;
     int row = int(place.y);
     if (row < rows.x || row >= rows.y) continue;

@@ -32,7 +32,8 @@ struct BatchRecord {
   vec4 x;  // xyz: step a cell, w: base
   vec4 y;
   vec4 depth;
-  ivec4 eyeCell;     // w: planes to read, 1 to 3
+  ivec4 offset;      // w: planes to read, 1 to 3
+  ivec4 shift;       // to the right where negative; w: unused
   uint firstWord;    // of plane 0 in the page
   uint planeStride;  // words from one plane to the next
   uint pointCount;
@@ -40,7 +41,7 @@ struct BatchRecord {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BatchRecord) == 80, "std430 has no padding here");
+static_assert(sizeof(BatchRecord) == 96, "std430 has no padding here");
 }  // namespace strata::shader
 #endif
 #endif

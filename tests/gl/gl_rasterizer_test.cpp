@@ -98,7 +98,7 @@ TEST_P(GlRasterizer, DrawsHugeCoordinatesFromClose) {
 
 TEST_P(GlRasterizer, DrawsNothingOfNothingAndOnePixelOfOnePoint) {
   STRATA_CREATE_OR_SKIP();
-  View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 200, 1.0);
+  View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 201, 1.0);
   rasterizer_->draw({}, view, {}, frame_);
   EXPECT_EQ(coveredPixels(frame_), 0u);
   const RenderList list = test::makeList({test::makeNode({}, {kUtm}, 0.001)});

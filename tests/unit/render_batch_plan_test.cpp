@@ -90,7 +90,7 @@ TEST(BatchPlan, CullsNoBatchWithAPointInTheImage) {
   const RenderList list = test::makeTown(kUtm, 100.0, 20000, 4, 6);
   for (const View& view : test::viewsAround(test::boundsOf(list), 16, 640, 480)) {
     DrawPlan plan;
-    planBatches(list, view, plan);
+    planBatches(list, view, {}, plan);
     EXPECT_GT(plan.batches.size() + plan.batchesCulled, 0u);
     std::uint32_t firstId = 0;
     std::size_t next = 0;
@@ -118,13 +118,13 @@ TEST(BatchPlan, CutsBatchesToThePrefixOfTheItem) {
   const View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.71}, 640, 480, 1.0);
   list.items[0].pointCount = 450;
   DrawPlan plan;
-  planBatches(list, view, plan);
+  planBatches(list, view, {}, plan);
   ASSERT_EQ(plan.batches.size(), 2u);
   EXPECT_EQ(plan.batches[0].pointCount, 300u);
   EXPECT_EQ(plan.batches[1].pointCount, 150u);
   EXPECT_EQ(plan.pointCount, 450u);
   list.items[0].pointCount = 5000;  // more than the node has
-  planBatches(list, view, plan);
+  planBatches(list, view, {}, plan);
   EXPECT_EQ(plan.pointCount, 1000u);
 }
 
@@ -136,7 +136,7 @@ TEST(BatchPlan, SurvivesBoxesThatAreNotFinite) {
     node->batches[0].boxMin.x = bad;
     node->batches[0].boxSize.y = std::abs(bad);
     DrawPlan plan;
-    planBatches(test::makeList({node, good}), view, plan);
+    planBatches(test::makeList({node, good}), view, {}, plan);
     EXPECT_EQ(plan.batches.size(), 1u);
   }
 }

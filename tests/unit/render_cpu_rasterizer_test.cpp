@@ -156,7 +156,7 @@ TEST(CpuRasterizer, DrawsNothingOfNothing) {
 
 TEST(CpuRasterizer, DrawsABatchOfOnePointAsOnePixel) {
   const RenderList list = test::makeList({test::makeNode({}, {kUtm}, 0.001)});
-  const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 200, 1.0);
+  const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 201, 1.0);
   const Frame frame = drawn(list, view);
   EXPECT_EQ(std::count(frame.pointId.begin(), frame.pointId.end(), 0u), 1);
   expectOraclesPicture(list, view);
