@@ -1,0 +1,28 @@
+#pragma once
+#include <span>
+
+#include "core/frame.h"
+#include "tests/support/mean_picture.h"
+
+namespace strata::test {
+
+/// How near a drawn picture comes to the reference, over the pixels that the reference covers. A pixel that the drawn
+/// picture leaves empty counts with the background colour that it has there.
+struct PictureQuality {
+  double covered = 1.0;  ///< share of the pixels in which the drawn picture has a point too
+  double psnr = 0.0;     ///< dB, RGB, peak 255; +inf for equal pictures
+  double ssim = 0.0;     ///< mean of the SSIM map, luminance
+};
+PictureQuality pictureQuality(const MeanPicture& reference, const Frame& drawn);
+
+/// Share of the reference's pixels that the frame has a point in.
+double coveredShare(const MeanPicture& reference, const Frame& drawn);
+
+/// PSNR in dB of two drawn pictures over all pixels, RGB; +inf when they are equal.
+double psnr(const Frame& a, const Frame& b);
+
+/// The SSIM map (Wang, Bovik, Sheikh, Simoncelli 2004: 11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03,
+/// L = 255) of two grey pictures, row by row; where the window does not fit into the picture it is left at -2.
+std::vector<double> ssimMap(std::span<const double> a, std::span<const double> b, int width, int height);
+
+}  // namespace strata::test
