@@ -3,137 +3,168 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <numeric>
 #include <utility>
 
 namespace strata {
 namespace {
 
-constexpr int kDigitBits = 11;
+/// Positions and where the records are, apart from these: what the way down moves.
+struct Columns {
+  explicit Columns(std::size_t count) : record(count) {
+    for (auto& a : axis) a.resize(count);
+  }
+  std::vector<std::int32_t> axis[3];
+  std::vector<std::uint32_t> record;
+};
+
+int octantOf(const Columns& columns, std::size_t i, int bit) {
+  return (columns.axis[0][i] >> bit & 1) << 2 | (columns.axis[1][i] >> bit & 1) << 1 | (columns.axis[2][i] >> bit & 1);
+}
+
+/// Puts the records in the order of the cells three levels down, so that what a node needs lies close together.
+std::vector<std::byte> sortRecords(const BuildFrame& frame, const CellFrame& cell, std::vector<std::byte> points) {
+  constexpr int kLevels = 3;
+  const std::size_t stride = frame.format.stride();
+  const std::size_t count = points.size() / stride;
+  if (cell.bits < kLevels || count == 0) return points;
+  std::vector<std::uint16_t> cells(count);
+  std::array<std::size_t, (1u << (3 * kLevels)) + 1> starts{};
+  for (std::size_t i = 0; i < count; ++i) {
+    std::int64_t grid[3];
+    frame.format.getPosition(points.data() + i * stride, grid);
+    unsigned code = 0;
+    for (int level = 1; level <= kLevels; ++level)
+      for (const std::int64_t g : grid)
+        code = code << 1 | (static_cast<unsigned>(cell.local(g) >> (cell.bits - level)) & 1u);
+    cells[i] = static_cast<std::uint16_t>(code);
+    ++starts[code + 1];
+  }
+  if (*std::max_element(starts.begin(), starts.end()) == count) return points;
+  for (std::size_t c = 1; c < starts.size(); ++c) starts[c] += starts[c - 1];
+  std::vector<std::byte> sorted(points.size());
+  for (std::size_t i = 0; i < count; ++i)
+    std::memcpy(sorted.data() + starts[cells[i]]++ * stride, points.data() + i * stride, stride);
+  return sorted;
+}
 
 class ChunkBuilder {
  public:
   ChunkBuilder(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points)
-      : frame_(frame), cell_(cell), points_(std::move(points)), keyLevels_(frame.keyLevels(cell)) {
-    const std::size_t stride = frame.format.stride();
-    keys_.resize(points_.size() / stride);
-    index_.resize(keys_.size());
-    for (std::size_t i = 0; i < keys_.size(); ++i) keys_[i] = frame.key(cell, points_.data() + i * stride);
-    std::iota(index_.begin(), index_.end(), 0u);
-    sortByKey(keys_, index_, 3 * keyLevels_);
+      : frame_(frame),
+        cell_(cell),
+        cellFrame_(frame, cell),
+        records_(sortRecords(frame, cellFrame_, std::move(points))),
+        columns_{Columns(records_.size() / frame.format.stride()), Columns(records_.size() / frame.format.stride())},
+        taken_(records_.size() / frame.format.stride()) {
+    for (std::size_t i = 0; i < taken_.size(); ++i) {
+      std::int64_t grid[3];
+      frame.format.getPosition(records_.data() + i * frame.format.stride(), grid);
+      for (std::size_t axis = 0; axis < 3; ++axis) columns_[0].axis[axis][i] = cellFrame_.local(grid[axis]);
+      columns_[0].record[i] = static_cast<std::uint32_t>(i);
+    }
   }
 
   BuiltChunk build() {
     BuiltChunk out;
-    std::size_t end = keys_.size();
-    out.topPoints = takeOwnPoints(cell_, 0, end);
-    out.topChildren = buildChildren(cell_, 0, end, out.nodes);
+    const std::size_t stride = frame_.format.stride();
+    Own own = takeOwn(cell_, 0, 0, taken_.size());
+    out.topPoints.resize(own.records.size() * stride);
+    for (std::size_t i = 0; i < own.records.size(); ++i)
+      std::memcpy(out.topPoints.data() + i * stride, records_.data() + own.records[i] * stride, stride);
+    out.topChildren = buildChildren(cell_, 0, own, out.nodes);
     return out;
   }
 
  private:
-  /// Removes the node's own points from the range and returns them; `end` moves down.
-  std::vector<std::byte> takeOwnPoints(NodeKey key, std::size_t begin, std::size_t& end) {
-    const std::size_t capacity = frame_.info.nodePoints;
-    const int levelsBelow = keyLevels_ - (key.level() - cell_.level());
-    const bool deepest = key.level() >= NodeKey::kDeepestLevel || levelsBelow <= 0;
-    const bool allAlike = begin < end && keys_[begin] == keys_[end - 1];
-    std::vector<std::uint32_t> own;
-    if (end - begin <= capacity || deepest || allAlike) {
-      own.assign(index_.begin() + static_cast<std::ptrdiff_t>(begin),
-                 index_.begin() + static_cast<std::ptrdiff_t>(end));
-      end = begin;
-    } else {
-      const std::uint64_t inside = (std::uint64_t{1} << (3 * levelsBelow)) - 1;
-      std::vector<std::uint64_t> local(keys_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                       keys_.begin() + static_cast<std::ptrdiff_t>(end));
-      for (std::uint64_t& k : local) k &= inside;
-      const std::vector<std::uint32_t> kept = selectRepresentatives({local, levelsBelow}, capacity);
-      own = removeFromRange(kept, begin, end);
-    }
-    std::vector<std::byte> packed(own.size() * frame_.format.stride());
-    for (std::size_t i = 0; i < own.size(); ++i)
-      std::memcpy(packed.data() + i * frame_.format.stride(), points_.data() + own[i] * frame_.format.stride(),
-                  frame_.format.stride());
-    return packed;
+  /// What a node keeps, and where its octants' points begin in the other columns.
+  struct Own {
+    LevelOrder levels;
+    std::vector<std::uint32_t> records;
+    std::array<std::size_t, 9> octants{};  ///< all alike: no children
+  };
+
+  LocalPoints localPoints(int side, std::size_t begin, std::size_t end) const {
+    LocalPoints points;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      points.axis[axis] = std::span(columns_[side].axis[axis]).subspan(begin, end - begin);
+    points.step = cellFrame_.step;
+    return points;
   }
 
-  /// Takes the points at begin + kept[...] out of the range, which closes up; returns their indices.
-  std::vector<std::uint32_t> removeFromRange(const std::vector<std::uint32_t>& kept, std::size_t begin,
-                                             std::size_t& end) {
-    std::vector<std::uint32_t> removed;
-    removed.reserve(kept.size());
-    std::size_t to = begin;
-    std::size_t next = 0;
-    for (std::size_t from = begin; from < end; ++from) {
-      if (next < kept.size() && begin + kept[next] == from) {
-        removed.push_back(index_[from]);
-        ++next;
-      } else {
-        keys_[to] = keys_[from];
-        index_[to++] = index_[from];
-      }
-    }
-    end = to;
-    return removed;
+  bool canSplit(NodeKey key, std::size_t begin, std::size_t end, int side) const {
+    if (end - begin <= frame_.info.nodePoints) return false;
+    if (key.level() >= NodeKey::kDeepestLevel || childBit(key) < 0) return false;
+    const LocalBounds bounds = boundsOf(localPoints(side, begin, end));
+    return bounds.low != bounds.high;
   }
 
-  std::vector<SubtreeShape> buildChildren(NodeKey parent, std::size_t begin, std::size_t end,
-                                          std::vector<BuiltNode>& nodes) {
+  /// The bit of a coordinate that tells the octants of `key` apart.
+  int childBit(NodeKey key) const { return cellFrame_.bits - 1 - (key.level() - cell_.level()); }
+
+  /// Orders the points [begin, end) of columns_[side] and keeps the node's own; the others go to columns_[1 - side],
+  /// by octant, into the same range.
+  Own takeOwn(NodeKey key, int side, std::size_t begin, std::size_t end) {
+    Own own;
+    const bool split = canSplit(key, begin, end, side);
+    own.levels = levelOrder(localPoints(side, begin, end), split ? frame_.info.nodePoints : LevelOrder::kAll, scratch_);
+    own.records.resize(own.levels.order.size());
+    for (std::size_t i = 0; i < own.records.size(); ++i)
+      own.records[i] = columns_[side].record[begin + own.levels.order[i]];
+    own.octants.fill(begin);
+    if (split) moveRest(side, begin, end, childBit(key), own);
+    return own;
+  }
+
+  void moveRest(int side, std::size_t begin, std::size_t end, int bit, Own& own) {
+    const Columns& from = columns_[side];
+    Columns& to = columns_[1 - side];
+    std::fill(taken_.begin() + static_cast<std::ptrdiff_t>(begin), taken_.begin() + static_cast<std::ptrdiff_t>(end),
+              std::uint8_t{0});
+    for (const std::uint32_t i : own.levels.order) taken_[begin + i] = 1;
+    std::array<std::size_t, 8> counts{};
+    for (std::size_t i = begin; i < end; ++i)
+      counts[static_cast<std::size_t>(octantOf(from, i, bit))] += 1u - taken_[i];
+    for (std::size_t o = 0; o < 8; ++o) own.octants[o + 1] = own.octants[o] + counts[o];
+    std::array<std::size_t, 9> next = own.octants;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (taken_[i]) continue;
+      const std::size_t at = next[static_cast<std::size_t>(octantOf(from, i, bit))]++;
+      for (std::size_t axis = 0; axis < 3; ++axis) to.axis[axis][at] = from.axis[axis][i];
+      to.record[at] = from.record[i];
+    }
+  }
+
+  std::vector<SubtreeShape> buildChildren(NodeKey parent, int side, const Own& own, std::vector<BuiltNode>& nodes) {
     std::vector<SubtreeShape> shapes;
-    const int shift = 3 * (keyLevels_ - (parent.level() - cell_.level()) - 1);
-    while (begin < end) {
-      const std::uint64_t cell = keys_[begin] >> shift;
-      const auto last = std::partition_point(keys_.begin() + static_cast<std::ptrdiff_t>(begin),
-                                             keys_.begin() + static_cast<std::ptrdiff_t>(end),
-                                             [&](std::uint64_t k) { return k >> shift == cell; });
-      const auto childEnd = static_cast<std::size_t>(last - keys_.begin());
-      shapes.push_back(buildNode(parent.child(static_cast<int>(cell & 7)), begin, childEnd, nodes));
-      begin = childEnd;
+    for (int octant = 0; octant < 8; ++octant) {
+      const auto o = static_cast<std::size_t>(octant);
+      if (own.octants[o] == own.octants[o + 1]) continue;
+      shapes.push_back(buildNode(parent.child(octant), 1 - side, own.octants[o], own.octants[o + 1], nodes));
     }
     return shapes;
   }
 
-  SubtreeShape buildNode(NodeKey key, std::size_t begin, std::size_t end, std::vector<BuiltNode>& nodes) {
+  SubtreeShape buildNode(NodeKey key, int side, std::size_t begin, std::size_t end, std::vector<BuiltNode>& nodes) {
     const std::size_t place = nodes.size();
     nodes.emplace_back();
-    const std::vector<std::byte> own = takeOwnPoints(key, begin, end);
-    const std::vector<SubtreeShape> children = buildChildren(key, begin, end, nodes);
-    FinishedNode finished = finishNode(frame_, key, own, children);
+    const Own own = takeOwn(key, side, begin, end);
+    const std::vector<SubtreeShape> children = buildChildren(key, side, own, nodes);
+    FinishedNode finished = finishNode(frame_, key, gather(frame_, records_, own.records), own.levels,
+                                       cellFrame_.world(own.levels.moments), children);
     nodes[place] = std::move(finished.node);
     return finished.shape;
   }
 
   const BuildFrame& frame_;
   const NodeKey cell_;
-  const std::vector<std::byte> points_;
-  const int keyLevels_;
-  std::vector<std::uint64_t> keys_;   ///< ascending
-  std::vector<std::uint32_t> index_;  ///< into points_, along with keys_
+  const CellFrame cellFrame_;
+  const std::vector<std::byte> records_;
+  Columns columns_[2];               ///< used in turn by level
+  std::vector<std::uint8_t> taken_;  ///< in the range that is being divided: stays in the node
+  TreeScratch scratch_;
 };
 
 }  // namespace
-
-void sortByKey(std::vector<std::uint64_t>& keys, std::vector<std::uint32_t>& index, int keyBits) {
-  std::vector<std::uint64_t> keys2(keys.size());
-  std::vector<std::uint32_t> index2(index.size());
-  std::uint64_t differing = 0;
-  for (const std::uint64_t k : keys) differing |= k ^ keys.front();
-  for (int shift = 0; shift < keyBits; shift += kDigitBits) {
-    constexpr std::uint64_t kMask = (1u << kDigitBits) - 1;
-    if ((differing >> shift & kMask) == 0) continue;
-    std::array<std::size_t, kMask + 2> starts{};
-    for (const std::uint64_t k : keys) ++starts[(k >> shift & kMask) + 1];
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      const std::size_t to = starts[keys[i] >> shift & kMask]++;
-      keys2[to] = keys[i];
-      index2[to] = index[i];
-    }
-    keys.swap(keys2);
-    index.swap(index2);
-  }
-}
 
 BuiltChunk buildChunk(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points) {
   return ChunkBuilder(frame, cell, std::move(points)).build();

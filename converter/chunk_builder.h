@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
@@ -9,16 +10,20 @@ namespace strata {
 /// The subtree of one bucket's cell, but for its top node: ancestors still take points out of that one.
 struct BuiltChunk {
   std::vector<BuiltNode> nodes;           ///< below the top node, in depth-first order
-  std::vector<std::byte> topPoints;       ///< packed, in Morton order
+  std::vector<std::byte> topPoints;       ///< packed
   std::vector<SubtreeShape> topChildren;  ///< shapes of the top node's subtrees
 };
 
 /// Builds the nodes of `cell` from all of its points (packed, in the order of the input), in memory, top down
 /// (design section 5, stage 3): a node keeps representatives, the rest goes to its children.
-/// Holds the points and 24 bytes for each of them.
 BuiltChunk buildChunk(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points);
 
-/// Sorts by key, keeping the order of equal keys. `index[i]` starts as i and moves along.
-void sortByKey(std::vector<std::uint64_t>& keys, std::vector<std::uint32_t>& index, int keyBits);
+/// Memory that building a chunk takes for each of its points at its peak, the points themselves included: the points
+/// twice while they are put in order, or the points, two sets of columns and the n-tree's scratch. Finished nodes
+/// (at most about a point's own size each) come on top.
+inline std::size_t chunkBytesPerPoint(const PackedFormat& format) {
+  constexpr std::size_t kColumnBytes = 16;
+  return std::max(2 * format.stride() + kColumnBytes, format.stride() + 2 * kColumnBytes + kTreeBytesPerPoint + 1);
+}
 
 }  // namespace strata

@@ -129,7 +129,7 @@ StoreInfo storeInfo(const Sources& sources, const ConvertOptions& options, const
   info.layout = frame.layout;
   info.ranges = all.ranges;
   info.nodePoints = options.nodePoints;
-  info.sampling = "grid";
+  info.sampling = "ntree";
   info.las = frame.las;
   if (const int rgb = frame.layout.find(attribute::kRgb); rgb >= 0)
     info.colourShift = all.ranges[static_cast<std::size_t>(rgb)].max > 255.0 ? 8 : 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 namespace strata {
 namespace {
@@ -37,7 +38,13 @@ class Merger {
 
   /// Writes the node as it is; returns its shape.
   SubtreeShape close(const OpenNode& node) {
-    FinishedNode finished = finishNode(frame_, node.key, node.points, node.children);
+    const CellFrame cell(frame_, node.key);
+    std::vector<std::int32_t> columns[3];
+    const LevelOrder levels = levelOrder(localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_);
+    Moments moments = cell.world(levels.moments);
+    for (const SubtreeShape& child : node.children) moments.add(child.moments);
+    FinishedNode finished =
+        finishNode(frame_, node.key, gather(frame_, node.points, levels.order), levels, moments, node.children);
     std::vector<BuiltNode> one;
     one.push_back(std::move(finished.node));
     sink_.write(std::move(one));
@@ -45,17 +52,30 @@ class Merger {
   }
 
  private:
-  OpenNode takeFromChildren(NodeKey cell, std::vector<OpenNode> children) {
+  /// The own points of all `nodes`, one after the other, in `columns`.
+  LocalPoints localPoints(const CellFrame& cell, std::span<const OpenNode> nodes,
+                          std::vector<std::int32_t> (&columns)[3]) const {
     const std::size_t stride = frame_.format.stride();
-    std::vector<std::uint64_t> keys;
-    for (const OpenNode& child : children)
-      for (std::size_t at = 0; at < child.points.size(); at += stride)
-        keys.push_back(frame_.key(cell, child.points.data() + at));
+    for (const OpenNode& node : nodes)
+      for (std::size_t at = 0; at < node.points.size(); at += stride) {
+        std::int64_t grid[3];
+        frame_.format.getPosition(node.points.data() + at, grid);
+        for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
+      }
+    return {{columns[0], columns[1], columns[2]}, cell.step};
+  }
+
+  OpenNode takeFromChildren(NodeKey key, std::vector<OpenNode> children) {
+    const std::size_t stride = frame_.format.stride();
+    const CellFrame cell(frame_, key);
+    std::vector<std::int32_t> columns[3];
+    const LocalPoints points = localPoints(cell, children, columns);
     // Half at most, so that a chain of only children does not empty the lower ones.
     const std::size_t capacity =
-        std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(keys.size() / 2, 1));
-    const std::vector<std::uint32_t> kept = selectRepresentatives({keys, frame_.keyLevels(cell)}, capacity);
-    OpenNode parent{cell, {}, {}};
+        std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(points.count() / 2, 1));
+    std::vector<std::uint32_t> kept = levelOrder(points, capacity, scratch_).order;
+    std::sort(kept.begin(), kept.end());
+    OpenNode parent{key, {}, {}};
     parent.points.reserve(kept.size() * stride);
     std::size_t next = 0, global = 0;
     for (OpenNode& child : children) {
@@ -80,6 +100,7 @@ class Merger {
   Spill& spill_;
   NodeSink& sink_;
   const ConvertControl& control_;
+  TreeScratch scratch_;
 };
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace strata {
 /// The top node of a finished chunk, waiting for its ancestors.
 struct ChunkTop {
   NodeKey key;
-  Spill::Handle points;  ///< packed, in Morton order
+  Spill::Handle points;  ///< packed
   std::vector<SubtreeShape> children;
 };
 

@@ -7,6 +7,7 @@
 #include "converter/contour.h"
 #include "converter/level_order.h"
 #include "converter/packed_points.h"
+#include "io/node_codec.h"
 #include "io/store.h"
 
 namespace strata {
@@ -19,10 +20,24 @@ struct BuildFrame {
   glm::dvec3 position(const std::int64_t (&grid)[3]) const {
     return info.grid.offset + info.grid.scale * glm::dvec3(grid[0], grid[1], grid[2]);
   }
-  /// Halvings of the node's cube that a key can hold.
-  int keyLevels(NodeKey cell) const;
-  /// Morton key of a packed point inside the cube of `cell`.
-  std::uint64_t key(NodeKey cell, const std::byte* record) const;
+};
+
+/// How grid integers become the LocalPoints of a cell: seen from its corner, and halved until 31 bits hold them.
+struct CellFrame {
+  CellFrame(const BuildFrame& frame, NodeKey cell);
+
+  std::int64_t inside;   ///< mask of the bits below the cell's corner
+  int bits;              ///< of a local integer: the cell spans 2^bits
+  int shift;             ///< local = (grid & inside) >> shift
+  glm::dvec3 corner{0};  ///< world
+  glm::dvec3 step{1};    ///< metres a local integer stands for
+
+  std::int32_t local(std::int64_t grid) const { return static_cast<std::int32_t>((grid & inside) >> shift); }
+  /// Moments about the corner as LevelOrder has them, in world coordinates.
+  Moments world(Moments moments) const {
+    moments.mean += corner;
+    return moments;
+  }
 };
 
 /// A node ready to be written.
@@ -37,9 +52,12 @@ struct FinishedNode {
   SubtreeShape shape;
 };
 
-/// Orders, packs and describes the points that a node keeps. `points` are packed records in Morton order (may be
-/// none); `children` are the shapes of the node's subtrees.
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, std::span<const std::byte> points,
-                        std::span<const SubtreeShape> children);
+/// Copies packed records, `which` of them in this order.
+NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::span<const std::uint32_t> which);
+
+/// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); `moments` are of
+/// them and everything below, world; `children` are the shapes of the node's subtrees.
+FinishedNode finishNode(const BuildFrame& frame, NodeKey key, const NodePoints& points, const LevelOrder& levels,
+                        const Moments& moments, std::span<const SubtreeShape> children);
 
 }  // namespace strata

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "converter/build_folder.h"
 #include "converter/options.h"
@@ -98,12 +99,52 @@ TEST_P(EveryShape, GivesTheSameBytesForOneTwoAndEightThreads) {
   }
 }
 
-TEST_P(EveryShape, NodesHoldNoMoreThanTheirCapacityUnlessTheyCannotBeSplit) {
+TEST_P(EveryShape, InnerNodesAreFullAndLeavesHoldNoMoreThanTheCapacity) {
   const test::TempFolder folder;
   convertTo(folder / "a.strata", {std::string("synthetic:") + GetParam() + "?points=100000"});
   const Store store((folder / "a.strata").string());
-  for (const NodeRecord& node : store.hierarchy().nodes)
-    EXPECT_TRUE(node.pointCount <= 4096 || node.childMask == 0) << NodeKey{node.key}.text();
+  for (std::uint32_t n = 0; n < store.hierarchy().nodes.size(); ++n) {
+    const NodeRecord& node = store.hierarchy().nodes[n];
+    if (node.childMask != 0) {
+      EXPECT_EQ(node.pointCount, 4096u) << NodeKey{node.key}.text();
+    } else if (node.pointCount > 4096u) {  // only copies of one point cannot be divided
+      const NodePoints points = readAll(store, n);
+      for (const auto& axis : points.grid)
+        EXPECT_EQ(*std::min_element(axis.begin(), axis.end()), *std::max_element(axis.begin(), axis.end()));
+    }
+  }
+}
+
+TEST_P(EveryShape, EveryPointLiesInItsNodesCubeAndInTheContoursOfItAndAllAbove) {
+  const test::TempFolder folder;
+  convertTo(folder / "a.strata", {std::string("synthetic:") + GetParam() + "?points=60000&seed=4"});
+  const Store store((folder / "a.strata").string());
+  const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
+  std::map<std::uint64_t, const NodeRecord*> byKey;
+  for (const NodeRecord& node : nodes) byKey[node.key] = &node;
+  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
+    const NodePoints points = readAll(store, n);
+    const int bits = store.info().cubeBits - NodeKey{nodes[n].key}.level();
+    for (std::size_t i = 0; i < points.count(); ++i) {
+      std::uint64_t code = 1;
+      for (int level = 1; level <= NodeKey{nodes[n].key}.level(); ++level)
+        for (const auto& axis : points.grid)
+          code = code << 1 | (static_cast<std::uint64_t>(axis[i]) >> (store.info().cubeBits - level) & 1);
+      ASSERT_EQ(code, nodes[n].key) << "of " << bits << " bits";
+      const glm::dvec3 world =
+          store.info().grid.offset +
+          store.info().grid.scale * glm::dvec3(points.grid[0][i], points.grid[1][i], points.grid[2][i]);
+      for (std::uint64_t key = nodes[n].key; key != 0; key >>= 3) {
+        const NodeRecord& node = *byKey.at(key);
+        const glm::dvec3 apart = world - glm::dvec3(node.centre[0], node.centre[1], node.centre[2]);
+        for (const auto& h : node.halfAxis) {
+          const glm::dvec3 axis(h[0], h[1], h[2]);
+          ASSERT_LE(std::abs(glm::dot(apart, axis)), glm::dot(axis, axis) * (1.0 + 1e-5) + 1e-5 * glm::length(axis))
+              << NodeKey{nodes[n].key}.text() << " in " << NodeKey{key}.text();
+        }
+      }
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape,

@@ -3,126 +3,254 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <numeric>
 #include <random>
 #include <set>
 
-#include "core/morton.h"
 #include "io/store.h"
 
 namespace strata {
 namespace {
 
-constexpr int kLevels = 12;
+/// Points that own their integers.
+struct Cloud {
+  std::vector<std::int32_t> axis[3];
+  glm::dvec3 step{0.001};
 
-std::vector<std::uint64_t> planeKeys(std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<std::uint64_t> keys;
-  for (std::size_t i = 0; i < count; ++i) keys.push_back(mortonCode(random() & 4095, random() & 4095, 2000));
-  std::sort(keys.begin(), keys.end());
-  return keys;
+  LocalPoints local() const { return {{axis[0], axis[1], axis[2]}, step}; }
+  glm::dvec3 position(std::size_t i) const { return step * glm::dvec3(axis[0][i], axis[1][i], axis[2][i]); }
+  std::size_t count() const { return axis[0].size(); }
+};
+
+glm::dquat anyTurn(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
 }
 
-std::vector<std::uint64_t> volumeKeys(std::size_t count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  std::vector<std::uint64_t> keys;
-  for (std::size_t i = 0; i < count; ++i) keys.push_back(mortonCode(random() & 4095, random() & 4095, random() & 4095));
-  std::sort(keys.begin(), keys.end());
-  return keys;
-}
-
-TEST(LevelOrder, IsAPermutationWithRisingPrefixesThatEndAtTheCount) {
-  std::mt19937_64 random(7);
-  for (int round = 0; round < 40; ++round) {
-    const auto keys = round % 2 == 0 ? planeKeys(random() % 3000, random()) : volumeKeys(random() % 3000, random());
-    const LevelOrder levels = levelOrder({keys, kLevels});
-    std::vector<std::uint32_t> sorted = levels.order;
-    std::sort(sorted.begin(), sorted.end());
-    std::vector<std::uint32_t> all(keys.size());
-    std::iota(all.begin(), all.end(), 0u);
-    ASSERT_EQ(sorted, all);
-    ASSERT_FALSE(levels.prefix.empty());
-    ASSERT_LE(levels.prefix.size(), static_cast<std::size_t>(NodeRecord::kMaxPrefixes));
-    ASSERT_TRUE(std::is_sorted(levels.prefix.begin(), levels.prefix.end()));
-    ASSERT_EQ(levels.prefix.back(), keys.size());
+/// Random points of a box with the given half sizes, turned, in the middle of a cube of 2^20 steps.
+Cloud turnedBox(std::mt19937_64& random, const glm::dvec3& half, std::size_t count, const glm::dquat& turn) {
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Cloud cloud;
+  for (std::size_t i = 0; i < count; ++i) {
+    const glm::dvec3 p = turn * (half * glm::dvec3(uniform(random), uniform(random), uniform(random)));
+    for (int a = 0; a < 3; ++a)
+      cloud.axis[a].push_back(static_cast<std::int32_t>(std::lround(p[a] / cloud.step[a])) + (1 << 19));
   }
+  return cloud;
 }
 
-TEST(LevelOrder, EveryLevelHasExactlyOnePointInEachOccupiedCellThatHadNone) {
-  const auto keys = volumeKeys(4000, 3);
-  const LevelOrder levels = levelOrder({keys, kLevels});
-  for (std::size_t l = 0; l + 1 < levels.prefix.size(); ++l) {
-    const int shift = 3 * (kLevels - static_cast<int>(l));
-    std::set<std::uint64_t> covered, occupied;
-    for (std::uint32_t i = 0; i < levels.prefix[l]; ++i) covered.insert(keys[levels.order[i]] >> shift);
-    for (const std::uint64_t k : keys) occupied.insert(k >> shift);
-    EXPECT_EQ(covered, occupied) << "level " << l;
-    EXPECT_EQ(levels.prefix[l], occupied.size()) << "level " << l;
+constexpr glm::dvec3 kLine{200.0, 0.02, 0.02}, kPlane{100.0, 80.0, 0.05}, kVolume{100.0, 80.0, 60.0};
+
+LevelOrder orderOf(const Cloud& cloud, std::size_t capacity = LevelOrder::kAll) {
+  TreeScratch scratch;
+  return levelOrder(cloud.local(), capacity, scratch);
+}
+
+void expectSound(const LevelOrder& levels, std::size_t points, std::size_t kept) {
+  ASSERT_EQ(levels.order.size(), kept);
+  EXPECT_EQ(std::set<std::uint32_t>(levels.order.begin(), levels.order.end()).size(), kept);
+  for (const std::uint32_t i : levels.order) ASSERT_LT(i, points);
+  for (const auto* ends : {&levels.prefix, &levels.passes}) {
+    ASSERT_FALSE(ends->empty());
+    EXPECT_TRUE(std::is_sorted(ends->begin(), ends->end()));
+    EXPECT_EQ(ends->back(), kept);
+  }
+  EXPECT_LE(levels.prefix.size(), static_cast<std::size_t>(NodeRecord::kMaxPrefixes));
+}
+
+TEST(LevelOrder, KeepsExactlyTheCapacityEachPointOnceWithRisingPrefixes) {
+  std::mt19937_64 random(7);
+  TreeScratch scratch;
+  for (int round = 0; round < 60; ++round) {
+    const glm::dvec3 half = round % 3 == 0 ? kLine : round % 3 == 1 ? kPlane : kVolume;
+    const Cloud cloud = turnedBox(random, half, random() % 5000, anyTurn(random));
+    const std::size_t capacity = 1 + random() % 6000;
+    expectSound(levelOrder(cloud.local(), capacity, scratch), cloud.count(), std::min(capacity, cloud.count()));
+    expectSound(levelOrder(cloud.local(), LevelOrder::kAll, scratch), cloud.count(), cloud.count());
   }
 }
 
 TEST(LevelOrder, CopiesOfOnePointAllStay) {
-  const std::vector<std::uint64_t> keys(20000, mortonCode(5, 6, 7));
-  const LevelOrder levels = levelOrder({keys, kLevels});
-  EXPECT_EQ(levels.order.size(), keys.size());
+  Cloud cloud;
+  for (auto& axis : cloud.axis) axis.assign(20000, 77);
+  expectSound(orderOf(cloud), 20000, 20000);
+  expectSound(orderOf(cloud, 100), 20000, 100);
 }
 
-TEST(SelectRepresentatives, FillsTheCapacityWhereThereAreCellsEnough) {
-  for (const std::size_t capacity : {1u, 7u, 100u, 1000u, 5000u}) {
-    const auto keys = planeKeys(20000, 11);
-    const auto kept = selectRepresentatives({keys, kLevels}, capacity);
-    EXPECT_LE(kept.size(), capacity);
-    EXPECT_GE(kept.size(), capacity * 99 / 100) << capacity;
-    EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
-    EXPECT_EQ(std::set<std::uint32_t>(kept.begin(), kept.end()).size(), kept.size());
+TEST(LevelOrder, AMillimetreFullOfPointsInAKilometreIsToldApart) {
+  // 10 levels of the volume's tree do not: a cell of the tenth holds all the points but one.
+  std::mt19937_64 random(5);
+  Cloud cloud = turnedBox(random, glm::dvec3(0.05), 20000, anyTurn(random));
+  for (auto& axis : cloud.axis) axis.push_back(0);
+  const LevelOrder levels = orderOf(cloud, 10000);
+  std::set<std::array<std::int32_t, 3>> cells;
+  for (const std::uint32_t i : levels.order)
+    cells.insert({cloud.axis[0][i] / 8, cloud.axis[1][i] / 8, cloud.axis[2][i] / 8});
+  EXPECT_GT(cells.size(), 1500u);  // of 1700 or so that are occupied
+}
+
+TEST(LevelOrder, TheOrderDoesNotDependOnWhatTheScratchHeldBefore) {
+  std::mt19937_64 random(9);
+  const Cloud a = turnedBox(random, kPlane, 30000, anyTurn(random));
+  const Cloud b = turnedBox(random, kVolume, 50000, anyTurn(random));
+  TreeScratch scratch;
+  levelOrder(b.local(), 1000, scratch);
+  EXPECT_EQ(levelOrder(a.local(), 5000, scratch).order, orderOf(a, 5000).order);
+}
+
+ContourClass classOf(const Cloud& cloud) {
+  TreeScratch scratch;
+  return buildTree(cloud.local(), LevelOrder::kAll, scratch).shape;
+}
+
+TEST(NTree, IsBinaryOnALineQuadOnAPlaneAndOctInAVolumeAtAnyRotation) {
+  std::mt19937_64 random(1);
+  for (int round = 0; round < 100; ++round) {
+    EXPECT_EQ(classOf(turnedBox(random, kLine, 500, anyTurn(random))), ContourClass::linear);
+    EXPECT_EQ(classOf(turnedBox(random, kPlane, 500, anyTurn(random))), ContourClass::planar);
+    EXPECT_EQ(classOf(turnedBox(random, kVolume, 500, anyTurn(random))), ContourClass::volumetric);
   }
+}
+
+TEST(NTree, EachCellOfEachLevelIsRepresentedByTheFirstOfItsPoints) {
+  std::mt19937_64 random(2);
+  for (const glm::dvec3& half : {kLine, kPlane, kVolume}) {
+    const Cloud cloud = turnedBox(random, half, 4000, anyTurn(random));
+    TreeScratch scratch;
+    const NTree tree = buildTree(cloud.local(), LevelOrder::kAll, scratch);
+    const int levelBits = tree.shape == ContourClass::linear ? 1 : tree.shape == ContourClass::planar ? 2 : 3;
+    const int levels = levelBits == 1 ? 24 : levelBits == 2 ? 15 : 10;
+    for (int level = 0; level <= levels; ++level) {
+      std::set<std::uint64_t> seen;
+      for (std::size_t i = 0; i < tree.entries.size(); ++i) {
+        const bool first = seen.insert(tree.entries[i] >> (32 + levelBits * (levels - level))).second;
+        ASSERT_EQ(first, tree.ranks[i] / NTree::kPasses <= level) << "level " << level << ", entry " << i;
+      }
+    }
+  }
+}
+
+TEST(LevelOrder, LeafDepthsDifferByAtMostOne) {
+  std::mt19937_64 random(3);
+  for (const glm::dvec3& half : {kLine, kPlane, kVolume})
+    for (const std::size_t capacity : {1u, 7u, 100u, 1000u, 5000u}) {
+      const Cloud cloud = turnedBox(random, half, 20000, anyTurn(random));
+      TreeScratch scratch;
+      const LevelOrder levels = levelOrder(cloud.local(), capacity, scratch);
+      const std::set<std::uint32_t> kept(levels.order.begin(), levels.order.end());
+      const NTree tree = buildTree(cloud.local(), capacity, scratch);
+      int lowestLeftOut = NTree::kBeyond, highestKept = 0;
+      for (std::size_t i = 0; i < tree.entries.size(); ++i) {
+        const int level = tree.ranks[i] / NTree::kPasses;
+        if (kept.count(tree.point(i)) > 0)
+          highestKept = std::max(highestKept, level);
+        else
+          lowestLeftOut = std::min(lowestLeftOut, level);
+      }
+      // All levels below `lowestLeftOut` are whole, and nothing is kept beyond it.
+      EXPECT_LE(highestKept, lowestLeftOut);
+    }
 }
 
 /// Coefficient of variation of the distances to the nearest neighbour: 0.52 for random points of a plane, 0 on a grid.
-double nearestNeighbourVariation(const std::vector<glm::dvec2>& points) {
-  std::vector<double> distances;
+double nearestNeighbourVariation(const Cloud& cloud, std::span<const std::uint32_t> shown) {
+  std::vector<glm::dvec3> points;
+  Box box;
+  for (const std::uint32_t i : shown) {
+    points.push_back(cloud.position(i));
+    box.add(points.back());
+  }
+  const double cell = 2.0 * box.diagonal() / std::sqrt(static_cast<double>(points.size()));
+  const auto cellOf = [&](const glm::dvec3& p) {
+    const glm::ivec3 c = glm::floor((p - box.min) / cell);
+    return std::array<int, 3>{c.x, c.y, c.z};
+  };
+  std::map<std::array<int, 3>, std::vector<std::size_t>> grid;
+  for (std::size_t i = 0; i < points.size(); ++i) grid[cellOf(points[i])].push_back(i);
+  double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     double best = 1e300;
-    for (std::size_t j = 0; j < points.size(); ++j)
-      if (j != i) best = std::min(best, glm::length(points[i] - points[j]));
-    distances.push_back(best);
+    const auto [x, y, z] = cellOf(points[i]);
+    for (int n = 0; n < 27; ++n)
+      if (const auto found = grid.find({x + n / 9 - 1, y + n / 3 % 3 - 1, z + n % 3 - 1}); found != grid.end())
+        for (const std::size_t j : found->second)
+          if (j != i) best = std::min(best, glm::length(points[i] - points[j]));
+    sum += best;
+    squares += best * best;
   }
-  const double mean = std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
-  double variance = 0.0;
-  for (const double d : distances) variance += (d - mean) * (d - mean) / static_cast<double>(distances.size());
-  return std::sqrt(variance) / mean;
+  const double mean = sum / static_cast<double>(points.size());
+  return std::sqrt(std::max(0.0, squares / static_cast<double>(points.size()) - mean * mean)) / mean;
 }
 
-TEST(LevelOrder, FullLevelsOfADensePlaneAreMoreEvenThanRandomPoints) {
+/// Largest variation at the ends of the levels, and at any of a row of prefixes.
+struct Evenness {
+  double fullLevels = 0.0, anywhere = 0.0;
+};
+Evenness evennessOf(const Cloud& cloud, const LevelOrder& levels) {
+  Evenness worst;
+  const std::span<const std::uint32_t> order = levels.order;
+  for (std::size_t l = 0; l + 1 < levels.prefix.size(); ++l)
+    if (levels.prefix[l] >= 200)
+      worst.fullLevels = std::max(worst.fullLevels, nearestNeighbourVariation(cloud, order.first(levels.prefix[l])));
+  for (std::size_t n = 200; n <= order.size(); n += n / 7 + 1)
+    worst.anywhere = std::max(worst.anywhere, nearestNeighbourVariation(cloud, order.first(n)));
+  return worst;
+}
+
+TEST(LevelOrder, EveryPrefixOfADensePlaneIsMoreEvenThanRandomPointsAtAnyRotation) {
   std::mt19937_64 random(13);
-  std::vector<std::pair<std::uint64_t, glm::dvec2>> plane;
-  for (int i = 0; i < 200000; ++i) {
-    const std::uint64_t x = random() & 4095, y = random() & 4095;
-    plane.push_back({mortonCode(x, y, 2000), glm::dvec2(x, y)});
-  }
-  std::sort(plane.begin(), plane.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-  std::vector<std::uint64_t> keys;
-  for (const auto& p : plane) keys.push_back(p.first);
-  const LevelOrder levels = levelOrder({keys, kLevels});
-  for (const std::size_t level : {4u, 5u, 6u}) {
-    std::vector<glm::dvec2> shown;
-    for (std::uint32_t i = 0; i < levels.prefix[level]; ++i) shown.push_back(plane[levels.order[i]].second);
-    EXPECT_LE(nearestNeighbourVariation(shown), 0.45) << "level " << level;
+  for (int round = 0; round < 6; ++round) {
+    const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 200000, anyTurn(random));
+    const Evenness evenness = evennessOf(cloud, orderOf(cloud, 16384));
+    RecordProperty("full levels", std::to_string(evenness.fullLevels));
+    RecordProperty("anywhere", std::to_string(evenness.anywhere));
+    EXPECT_LE(evenness.fullLevels, 0.30);
+    EXPECT_LE(evenness.anywhere, 0.45);
   }
 }
 
 TEST(LevelOrder, EveryPrefixSpreadsOverAllQuartersOfAPlane) {
-  const auto keys = planeKeys(60000, 17);
-  const LevelOrder levels = levelOrder({keys, kLevels});
-  for (std::size_t prefix = 400; prefix < keys.size(); prefix = prefix * 21 / 20) {
-    std::map<std::uint64_t, std::size_t> quarters;
-    for (std::size_t i = 0; i < prefix; ++i) ++quarters[keys[levels.order[i]] >> (3 * (kLevels - 1))];
+  std::mt19937_64 random(17);
+  const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 60000, glm::dquat(1.0, 0.0, 0.0, 0.0));
+  const LevelOrder levels = orderOf(cloud);
+  for (std::size_t prefix = 400; prefix < cloud.count(); prefix = prefix * 21 / 20) {
+    std::map<int, std::size_t> quarters;
+    for (std::size_t i = 0; i < prefix; ++i) {
+      const std::uint32_t p = levels.order[i];
+      ++quarters[(cloud.axis[0][p] >> 19) * 2 + (cloud.axis[1][p] >> 19)];
+    }
     ASSERT_EQ(quarters.size(), 4u);
     for (const auto& [quarter, count] : quarters)
       EXPECT_NEAR(static_cast<double>(count), static_cast<double>(prefix) / 4.0, static_cast<double>(prefix) * 0.06)
           << "prefix " << prefix;
+  }
+}
+
+TEST(LevelOrder, PassesOfADensePlaneAreEvenByThemselves) {
+  std::mt19937_64 random(19);
+  const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 200000, anyTurn(random));
+  const LevelOrder levels = orderOf(cloud, 16384);
+  EXPECT_LE(levels.passes.size(), 12u * levels.prefix.size());
+  for (std::size_t p = 1; p < levels.passes.size(); ++p) {
+    const std::span<const std::uint32_t> pass =
+        std::span<const std::uint32_t>(levels.order)
+            .subspan(levels.passes[p - 1], levels.passes[p] - levels.passes[p - 1]);
+    if (pass.size() >= 500) {
+      EXPECT_LE(nearestNeighbourVariation(cloud, pass), 0.30) << p;
+    }
+  }
+}
+
+TEST(LevelOrder, SpacingIsTheDistanceOfNeighboursOnAPlane) {
+  std::mt19937_64 random(23);
+  for (int round = 0; round < 5; ++round) {
+    const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 100000, anyTurn(random));
+    const double even = 200.0 / std::sqrt(10000.0);
+    EXPECT_NEAR(orderOf(cloud, 10000).spacing, even, 0.25 * even);
   }
 }
 
