@@ -244,7 +244,7 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
 ConvertOptions completed(const ConvertOptions& asked) {
   ConvertOptions options = asked;
   while (options.output.size() > 1 && options.output.back() == '/') options.output.pop_back();
-  if (options.threads <= 0) options.threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  options.threads = threadsOf(options);
   options.source.memoryBytes = options.memoryBytes;
   checkOutput(options.output, options.force);
   if (!options.tempFolder.empty() && !fs::is_directory(options.tempFolder))
@@ -255,6 +255,10 @@ ConvertOptions completed(const ConvertOptions& asked) {
 }
 
 }  // namespace
+
+int threadsOf(const ConvertOptions& options) {
+  return options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
 
 ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control) {
   const ConvertOptions options = completed(asked);

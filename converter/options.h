@@ -21,6 +21,9 @@ struct ConvertOptions {
   SourceOptions source;
 };
 
+/// How many threads the options ask for: 0 means all cores.
+int threadsOf(const ConvertOptions& options);
+
 inline constexpr std::uint64_t kLeastMemoryBytes = std::uint64_t{512} << 20;
 inline constexpr std::uint32_t kLeastNodePoints = 1024;
 inline constexpr std::uint32_t kMostNodePoints = 1u << 20;
@@ -42,6 +45,12 @@ struct Progress {
   std::uint64_t done = 0, total = 0;  ///< points; both 0 where a stage cannot say
 };
 
+/// What one kind of plane takes in all nodes together (docs/format.md).
+struct PlaneSize {
+  std::string name;
+  std::uint64_t rawBytes = 0, storedBytes = 0;
+};
+
 /// What a conversion reports (design section 10).
 struct ConvertReport {
   std::uint64_t points = 0, nodes = 0, skipped = 0;
@@ -52,6 +61,7 @@ struct ConvertReport {
   };
   std::vector<Stage> stages;
   std::vector<std::uint64_t> nodesByLevel, pointsByLevel;  ///< from the root down
+  std::vector<PlaneSize> planes;
 };
 
 /// What the stages share besides the options: progress and the wish to stop.

@@ -4,11 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <mutex>
-#include <nlohmann/json.hpp>
 
 #include "converter/command_line.h"
+#include "converter/conversion_summary.h"
 #include "converter/options.h"
+#include "converter/progress_display.h"
 #include "core/error.h"
 #include "core/program.h"
 
@@ -23,79 +23,10 @@ void allowManyFiles() {
   ::setrlimit(RLIMIT_NOFILE, &files);
 }
 
-double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
-
-/// One line on a terminal, rewritten; nothing at all elsewhere but the end of each stage.
-class ProgressLine {
- public:
-  ProgressLine() = default;
-  ~ProgressLine() { end(); }
-  ProgressLine(const ProgressLine&) = delete;
-  ProgressLine& operator=(const ProgressLine&) = delete;
-
-  void show(const Progress& progress) {
-    if (!terminal_) return;
-    const std::lock_guard lock(mutex_);
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(200)) return;
-    last_ = now;
-    if (stage_ != progress.stage) {
-      stage_ = progress.stage;
-      stageBegin_ = now;
-    }
-    const double elapsed = std::chrono::duration<double>(now - stageBegin_).count();
-    const double rate = elapsed > 0.0 ? static_cast<double>(progress.done) / elapsed : 0.0;
-    const double share =
-        progress.total > 0 ? static_cast<double>(progress.done) / static_cast<double>(progress.total) : 0.0;
-    const double left =
-        rate > 0.0 ? static_cast<double>(progress.total - std::min(progress.total, progress.done)) / rate : 0.0;
-    std::fprintf(stdout, "\r%-9s %5.1f %%  %s points  %.1f M points/s  %.0f s left   ", stage_.c_str(), 100.0 * share,
-                 grouped(progress.done).c_str(), rate * 1e-6, left);
-    std::fflush(stdout);
-    shown_ = true;
-  }
-  void end() {
-    if (shown_) std::fprintf(stdout, "\r%80s\r", "");
-    shown_ = false;
-  }
-
- private:
-  const bool terminal_ = ::isatty(STDOUT_FILENO) != 0;
-  std::mutex mutex_;
-  std::chrono::steady_clock::time_point last_{};  ///< guarded by mutex_, as all below
-  std::chrono::steady_clock::time_point stageBegin_{};
-  std::string stage_;
-  bool shown_ = false;
-};
-
-void printSummary(const ConvertOptions& options, const ConvertReport& report, double wall, const rusage& usage) {
-  std::printf("%s: %s points in %s nodes, %.2f bytes a point, %.1f s (%.2f M points/s)\n", options.output.c_str(),
-              grouped(report.points).c_str(), grouped(report.nodes).c_str(),
-              static_cast<double>(report.outputBytes) / static_cast<double>(report.points), wall,
-              static_cast<double>(report.points) / wall * 1e-6);
-  if (report.skipped > 0) std::printf("skipped %s points\n", grouped(report.skipped).c_str());
-  for (const ConvertReport::Stage& stage : report.stages)
-    std::printf("  %-10s %8.2f s\n", stage.name.c_str(), stage.seconds);
-  std::printf("  cpu %.1f s, memory peak %ld MiB, temporary disk peak %.0f MiB\n",
-              seconds(usage.ru_utime) + seconds(usage.ru_stime), usage.ru_maxrss / 1024,
-              static_cast<double>(report.tempPeakBytes) / 1048576.0);
-}
-
-void printJson(const ConvertReport& report, double wall, const rusage& usage) {
-  nlohmann::ordered_json stages;
-  for (const ConvertReport::Stage& stage : report.stages) stages[stage.name] = stage.seconds;
-  const nlohmann::ordered_json json{{"points", report.points},
-                                    {"nodes", report.nodes},
-                                    {"seconds", wall},
-                                    {"points_per_second", static_cast<double>(report.points) / wall},
-                                    {"cpu_seconds", seconds(usage.ru_utime) + seconds(usage.ru_stime)},
-                                    {"peak_rss_bytes", static_cast<std::uint64_t>(usage.ru_maxrss) * 1024},
-                                    {"input_bytes", report.inputBytes},
-                                    {"output_bytes", report.outputBytes},
-                                    {"temp_peak_bytes", report.tempPeakBytes},
-                                    {"skipped", report.skipped},
-                                    {"stages", stages}};
-  std::printf("%s\n", json.dump().c_str());
+/// One line on a terminal; else lines on stderr, so that stdout holds the result alone.
+ProgressDisplay::Style progressStyle(bool json) {
+  if (json) return ProgressDisplay::Style::json;
+  return ::isatty(STDERR_FILENO) != 0 ? ProgressDisplay::Style::terminal : ProgressDisplay::Style::lines;
 }
 
 int run(int argc, char** argv) {
@@ -124,20 +55,20 @@ int run(int argc, char** argv) {
 
   listenForStop();
   allowManyFiles();
-  ProgressLine line;
-  ConvertControl control;
-  control.stop = &stopAsked();
-  if (!json) control.progress = [&line](const Progress& progress) { line.show(progress); };
   const auto begin = std::chrono::steady_clock::now();
-  const ConvertReport report = convert(options, control);
-  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  line.end();
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
+  const ConvertReport report = [&] {
+    ProgressDisplay display(progressStyle(json), stderr, threadsOf(options));
+    ConvertControl control;
+    control.stop = &stopAsked();
+    control.progress = [&display](const Progress& progress) { display.update(progress); };
+    return convert(options, control);
+  }();
+  RunCost cost = runCost();
+  cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (json)
-    printJson(report, wall, usage);
+    std::printf("%s\n", summaryJson(report, cost).c_str());
   else
-    printSummary(options, report, wall, usage);
+    std::fputs(summaryText(options.output, report, cost).c_str(), stdout);
   flushOutput();
   return 0;
 }
