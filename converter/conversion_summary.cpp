@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "core/program.h"
 
@@ -47,6 +48,7 @@ void addStages(std::string& text, const ConvertReport& report, const RunCost& co
   const auto points = static_cast<double>(report.points);
   addLine(text, "  %-11s %9s %9s %6s %11s %10s", "stage", "wall s", "cpu s", "cores", "M points/s", "us/point");
   const auto row = [&](const char* name, double wall, double cpu) {
+    if (name == std::string_view(stage::kSurvey)) return addLine(text, "  %-11s %9.2f %9.2f", name, wall, cpu);
     addLine(text, "  %-11s %9.2f %9.2f %6.2f %11.2f %10.3f", name, wall, cpu, ratio(cpu, wall),
             1e-6 * ratio(points, wall), 1e6 * ratio(cpu, points));
   };
