@@ -1,19 +1,104 @@
 #!/usr/bin/env bash
-# Times conversions as docs/benchmarks.md reports them: a synthetic city as LAS and LAZ, every stage, three runs each.
-# usage: tests/bench/convert.sh [POINTS] [FOLDER]
+# Makes the conversion tables of docs/benchmarks.md: a synthetic city as LAS 1.2 format 2 (26 bytes a point) and LAZ,
+# converted with default options. Prints Markdown; what it is doing goes to stderr. Inputs are made where FOLDER has
+# none, one at a time, and those that were made are deleted as soon as they are measured.
+# usage: tests/bench/convert.sh [-d FOLDER] [-b BUILD] [-r RUNS] [-m MEMORY] [-k] [POINTS...]
+#   FOLDER  inputs (city_50M.las ...) and scratch; needs up to 26 + 35 bytes a point of the largest size (default: a new
+#           one under TMPDIR)      BUILD  folder with bin/ and tests/ (default: build/release)
+#   RUNS    medians over so many (default: 3 below 200 million points, else 1)      MEMORY  --memory (default 2G)
+#   -k      keep inputs that were made      POINTS  default: 10M 50M 200M 500M
 set -euo pipefail
-points=${1:-50e6}
-folder=${2:-$(mktemp -d)}
-bin=$(cd "$(dirname "$0")/../.." && pwd)/build/release/bin
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=$root/build/release folder= runs= memory=2G keep=0
+while getopts d:b:r:m:k option; do
+  case $option in
+    d) folder=$OPTARG ;;
+    b) build=$OPTARG ;;
+    r) runs=$OPTARG ;;
+    m) memory=$OPTARG ;;
+    k) keep=1 ;;
+    *) exit 2 ;;
+  esac
+done
+shift $((OPTIND - 1))
+sizes=("$@")
+[ ${#sizes[@]} -gt 0 ] || sizes=(10M 50M 200M 500M)
+export PATH=$build/bin:$build/tests:$PATH
+for program in strata-convert make_scan laszip_decode python3; do
+  command -v "$program" >/dev/null || { echo "error: $program is not there (build all targets, or say -b)" >&2; exit 1; }
+done
+made_folder=0
+if [ -z "$folder" ]; then folder=$(mktemp -d) made_folder=1; fi
 mkdir -p "$folder"
-if [ ! -e "$folder/city.las" ]; then
-  "$bin/strata-convert" "synthetic:city?points=$points" -o "$folder/made.strata" --force --json >/dev/null
-  "$bin/strata-export" "$folder/made.strata" -o "$folder/city.las" --force >/dev/null
-  "$bin/strata-export" "$folder/made.strata" -o "$folder/city.laz" --force >/dev/null
-fi
-for input in city.las city.laz; do
-  for run in 1 2 3; do
-    printf '%s run %s: ' "$input" "$run"
-    "$bin/strata-convert" "$folder/$input" -o "$folder/timed.strata" --force --json | tail -n 1
+results=$(mktemp -d)
+# shellcheck disable=SC2317  # called by the trap
+clean_up() {
+  rm -rf "$results" "$folder/timed.strata" "$folder/timed.strata.building" "$folder/making".* "$folder/outofcore"
+  [ "$made_folder" = 0 ] || rm -rf "$folder"
+}
+trap clean_up EXIT
+
+note() { printf '%s %s\n' "$(date +%T)" "$*" >&2; }
+points_of() { awk -v t="$1" 'BEGIN { n = t + 0; if (t ~ /[kK]$/) n *= 1e3; if (t ~ /M$/) n *= 1e6; if (t ~ /G$/) n *= 1e9; printf "%d", n }'; }
+free_bytes() { df --output=avail -B1 "$folder" | tail -n 1; }
+
+# make_input SIZE ENDING: FOLDER/city_SIZE.ENDING, under another name until it is whole.
+make_input() {
+  note "making city_$1.$2"
+  make_scan "synthetic:city?points=$(points_of "$1")&seed=1" "$folder/making.$2"
+  mv "$folder/making.$2" "$folder/city_$1.$2"
+}
+
+# convert_once SIZE ENDING: appends one line of JSON to RESULTS/SIZE.ENDING
+convert_once() {
+  rm -rf "$folder/timed.strata"
+  cat "$folder/city_$1.$2" >/dev/null # warm where it fits; the table says so
+  strata-convert "$folder/city_$1.$2" -o "$folder/timed.strata" --memory "$memory" --force --json 2>/dev/null |
+    tail -n 1 >>"$results/$1.$2"
+  rm -rf "$folder/timed.strata"
+}
+
+for size in "${sizes[@]}"; do
+  points=$(points_of "$size")
+  for ending in las laz; do
+    input=$folder/city_$size.$ending
+    made=0
+    if [ ! -e "$input" ]; then
+      [ $ending = las ] && need=$((points * 48)) || need=$((points * 35))
+      if [ "$(free_bytes)" -lt "$need" ]; then
+        note "$size $ending left out: $(free_bytes) bytes free, $need needed"
+        echo "| $size | ${ending^^} | left out: the disk has not enough room |" >>"$results/left_out"
+        continue
+      fi
+      make_input "$size" "$ending"
+      made=1
+    fi
+    times=${runs:-$([ "$points" -ge 200000000 ] && echo 1 || echo 3)}
+    for run in $(seq "$times"); do
+      note "city_$size.$ending run $run of $times"
+      convert_once "$size" "$ending"
+    done
+    if [ "$ending" = laz ]; then
+      note "LASzip alone on city_$size.laz"
+      laszip_decode "$input" >"$results/$size.decode"
+    fi
+    if [ $made = 1 ] && [ $keep = 0 ]; then rm -f "$input"; fi
   done
 done
+
+# PCL's own converter on 10 million points, or on as many as the smallest size has.
+pcl_size=10M
+case " ${sizes[*]} " in *" 10M "*) ;; *) pcl_size=${sizes[0]} ;; esac
+if command -v pcl_outofcore_process >/dev/null; then
+  note "pcl_outofcore_process on $pcl_size"
+  make_input "$pcl_size" pcd
+  rm -rf "$folder/outofcore"
+  python3 "$root/tests/bench/time_command.py" "$folder/outofcore" \
+    pcl_outofcore_process -depth 5 -gen_lod -overwrite "$folder/city_$pcl_size.pcd" "$folder/outofcore" \
+    >"$results/pcl" 2>/dev/null || { rm -f "$results/pcl"; echo "it failed" >"$results/pcl_why"; }
+  rm -rf "$folder/outofcore" "$folder/city_$pcl_size.pcd"
+else
+  echo "package pcl-tools is not installed" >"$results/pcl_why"
+fi
+
+python3 "$root/tests/bench/convert_table.py" "$results" "$pcl_size" "$memory" "${sizes[@]}"
