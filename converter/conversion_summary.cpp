@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "converter/disk_room.h"
 #include "core/program.h"
 
 namespace strata {
@@ -83,15 +84,6 @@ RunCost runCost() {
   return cost;
 }
 
-std::string bytesText(double bytes) {
-  const char* units[] = {"B", "KiB", "MiB", "GiB", "TiB"};
-  std::size_t unit = 0;
-  for (; bytes >= 1024.0 && unit + 1 < std::size(units); ++unit) bytes /= 1024.0;
-  char text[32];
-  std::snprintf(text, sizeof text, unit == 0 || bytes >= 100.0 ? "%.0f %s" : "%.1f %s", bytes, units[unit]);
-  return text;
-}
-
 std::string summaryText(const std::string& output, const ConvertReport& report, const RunCost& cost) {
   const auto points = static_cast<double>(report.points);
   std::string text;
@@ -134,6 +126,10 @@ std::string summaryJson(const ConvertReport& report, const RunCost& cost) {
                   {"points_by_level", report.pointsByLevel},
                   {"planes", planes}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string warningJson(const std::string& message) {
+  return Json{{"warning", message}}.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace strata

@@ -21,7 +21,7 @@ std::string summaryText(const std::string& output, const ConvertReport& report, 
 /// The same as one JSON object in one line (design section 10).
 std::string summaryJson(const ConvertReport& report, const RunCost& cost);
 
-/// "512 MiB", "13.4 GiB".
-std::string bytesText(double bytes);
+/// {"warning": MESSAGE}
+std::string warningJson(const std::string& message);
 
 }  // namespace strata

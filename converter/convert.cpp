@@ -9,13 +9,13 @@
 
 #include "converter/build_folder.h"
 #include "converter/chunk_builder.h"
+#include "converter/disk_room.h"
 #include "converter/distribute.h"
 #include "converter/merge.h"
 #include "converter/node_sink.h"
 #include "converter/options.h"
 #include "converter/survey.h"
 #include "core/error.h"
-#include "core/log.h"
 #include "io/store_files.h"
 
 namespace strata {
@@ -206,8 +206,12 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   for (const auto& source : sources) {
     report.inputBytes += source->info().fileBytes;
     if (source->info().pointCount == 0 && sources.size() == 1) throw Error(source->info().path, "has no points");
-    if (source->info().pointCount == 0) logWarning(source->info().path + ": has no points");
+    if (source->info().pointCount == 0) control.warn(source->info().path + ": has no points");
   }
+  const std::string storeFolder = folderOf(options.output);
+  for (const std::string& warning :
+       roomWarnings(storeFolder, options.tempFolder.empty() ? storeFolder : options.tempFolder, usualDiskNeed(sources)))
+    control.warn(warning);
 
   BuildFolder folder(options.output, options.force);
   Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/log.h"
 #include "io/point_source.h"
 
 namespace strata {
@@ -67,6 +68,7 @@ struct ConvertReport {
 /// What the stages share besides the options: progress and the wish to stop.
 struct ConvertControl {
   std::function<void(const Progress&)> progress = [](const Progress&) {};
+  std::function<void(const std::string&)> warn = [](const std::string& message) { logWarning(message); };
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler
   /// Throws Error("stopped") when the user asked to.
   void checkStop() const;

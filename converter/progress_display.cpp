@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "converter/conversion_summary.h"
+#include "converter/disk_room.h"
 
 namespace strata {
 namespace {

@@ -8,6 +8,7 @@
 #include "converter/command_line.h"
 #include "converter/conversion_summary.h"
 #include "converter/options.h"
+#include "converter/plan.h"
 #include "converter/progress_display.h"
 #include "core/error.h"
 #include "core/program.h"
@@ -29,13 +30,23 @@ ProgressDisplay::Style progressStyle(bool json) {
   return ::isatty(STDERR_FILENO) != 0 ? ProgressDisplay::Style::terminal : ProgressDisplay::Style::lines;
 }
 
+/// Stderr is for the one line of an error where a program may be reading it.
+void showWarning(ProgressDisplay::Style style, const std::string& message) {
+  if (style == ProgressDisplay::Style::terminal)
+    std::fprintf(stderr, "\r\033[Kwarning: %s\n", message.c_str());
+  else if (style == ProgressDisplay::Style::lines)
+    std::printf("warning: %s\n", message.c_str());
+  else
+    std::printf("%s\n", warningJson(message).c_str());
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Converts laser scans to a Strata store.", "strata-convert");
   ConvertOptions options;
   std::string memory = "2G";
-  bool json = false, resume = false;
+  bool json = false, resume = false, plan = false;
   app.add_option("INPUT", options.inputs, "scan files, folders, or synthetic:NAME?points=1e6&seed=1")->required();
-  app.add_option("-o,--output", options.output, "the store to make, NAME.strata")->required();
+  app.add_option("-o,--output", options.output, "the store to make, NAME.strata");
   app.add_option("--memory", memory, "most memory to use, at least 512M")->capture_default_str();
   app.add_option("--threads", options.threads, "0 = all cores")->check(CLI::Range(0, 1024))->capture_default_str();
   app.add_option("--node-points", options.nodePoints, "points a node holds")
@@ -47,8 +58,10 @@ int run(int argc, char** argv) {
   app.add_flag("--skip-damaged", options.source.skipDamaged, "convert what is sound of a damaged scan");
   app.add_flag("--resume", resume, "take up an interrupted conversion: what it left is cleared and done again");
   app.add_flag("--force", options.force, "replace an existing store");
-  app.add_flag("--json", json, "print one JSON object as the last line");
+  app.add_flag("--plan", plan, "say what the conversion would take, and convert nothing; -o and --temp name the disks");
+  app.add_flag("--json", json, "print one JSON object as the last line; progress as JSON lines on stderr");
   if (!parseCommandLine(app, argc, argv)) return 0;
+  if (!plan && app.count("--output") == 0) throw UsageError("--output is required");
   options.memoryBytes = parseBytes("--memory", memory);
   if (options.memoryBytes < kLeastMemoryBytes)
     throw UsageError("--memory", "found " + memory + " (expected at least 512M)");
@@ -56,10 +69,18 @@ int run(int argc, char** argv) {
   listenForStop();
   allowManyFiles();
   const auto begin = std::chrono::steady_clock::now();
+  const ProgressDisplay::Style style = progressStyle(json);
+  ConvertControl control;
+  control.stop = &stopAsked();
+  control.warn = [style](const std::string& message) { showWarning(style, message); };
+  if (plan) {
+    const ConversionPlan planned = planConversion(options, control);
+    std::fputs(json ? (planJson(planned) + "\n").c_str() : planText(planned, options).c_str(), stdout);
+    flushOutput();
+    return 0;
+  }
   const ConvertReport report = [&] {
-    ProgressDisplay display(progressStyle(json), stderr, threadsOf(options));
-    ConvertControl control;
-    control.stop = &stopAsked();
+    ProgressDisplay display(style, stderr, threadsOf(options));
     control.progress = [&display](const Progress& progress) { display.update(progress); };
     return convert(options, control);
   }();

@@ -9,7 +9,7 @@
 #   -k      keep inputs that were made      POINTS  default: 10M 50M 200M 500M
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-build=$root/build/release folder= runs= memory=2G keep=0
+build=$root/build/release folder='' runs='' memory=2G keep=0
 while getopts d:b:r:m:k option; do
   case $option in
     d) folder=$OPTARG ;;
