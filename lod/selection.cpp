@@ -40,6 +40,45 @@ double areaPerPoint(const NodeRecord& record, const Contour& contour, double fac
   return known ? std::min(spacing * spacing, byArea) : byArea;
 }
 
+/// Points to draw of a node when `share` of the wanted density is to be reached; 0 = leave it out.
+std::uint32_t pointsAt(const Selection::Candidate& node, double share) {
+  if (!node.root && share < 1.0 && !(share * static_cast<double>(node.selected.priority) > 1.0)) return 0;
+  const double wanted = share * node.wanted;
+  const double fraction = node.linear ? (std::sqrt(wanted) - std::sqrt(node.given)) * std::sqrt(node.areaPerPoint)
+                                      : (wanted - node.given) * node.areaPerPoint;
+  // Written so that what is not a number counts as nothing.
+  const double points = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * node.pointCount;
+  if (!node.root && node.leaf && points < 0.5) return 0;
+  return std::min(std::max(static_cast<std::uint32_t>(points + 0.5), 1u), node.pointCount);
+}
+
+std::uint64_t pointsAt(std::span<const Selection::Candidate> nodes, double share) {
+  std::uint64_t points = 0;
+  for (const Selection::Candidate& node : nodes) points += pointsAt(node, share);
+  return points;
+}
+
+/// The share of the wanted density, below `high`, that comes close to the budget without exceeding it.
+double shareWithin(std::span<const Selection::Candidate> nodes, std::uint64_t budget, double high) {
+  constexpr double kLeast = 1e-60;  // beside an eye within the node any less is one point
+  constexpr double kUnused = 1e-3;  // of the budget; what is left is spread by the caller
+  constexpr int kMostSteps = 40;
+  double low = 0.5 * high;
+  while (pointsAt(nodes, low) > budget) {
+    high = low;
+    low *= 0.25;
+    if (low < kLeast) return 0.0;
+  }
+  const auto enough = static_cast<std::uint64_t>(static_cast<double>(budget) * (1.0 - kUnused));
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double middle = std::sqrt(low * high);
+    const std::uint64_t points = pointsAt(nodes, middle);
+    (points > budget ? high : low) = middle;
+    if (points <= budget && points >= enough) break;
+  }
+  return low;
+}
+
 class Walk {
  public:
   Walk(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const SelectionOptions& options)
@@ -58,24 +97,20 @@ class Walk {
     if (!isRoot && (!(wanted > given) || screen.extentPx < options_.minimumPixels)) return std::nullopt;
 
     Selection::Candidate candidate;
-    candidate.density = given;
-    double fraction = 0.0;
-    if (record.pointCount > 0) {
-      const double area = areaPerPoint(record, contour, screen.faceArea);
-      candidate.density += area > 0.0 ? 1.0 / area : std::numeric_limits<double>::infinity();
-      fraction = record.contourClass == static_cast<std::uint8_t>(ContourClass::linear)
-                     ? (std::sqrt(wanted) - std::sqrt(given)) * std::sqrt(area)
-                     : (wanted - given) * area;
-    }
-    // Written so that what is not a number counts as nothing.
-    const double points = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * record.pointCount;
-    if (!isRoot && record.childMask == 0 && points < 0.5) return std::nullopt;
+    candidate.pointCount = record.pointCount;
+    candidate.root = isRoot;
+    candidate.leaf = record.childMask == 0;
+    candidate.linear = record.contourClass == static_cast<std::uint8_t>(ContourClass::linear);
+    candidate.wanted = wanted;
+    candidate.given = given;
+    if (record.pointCount > 0) candidate.areaPerPoint = areaPerPoint(record, contour, screen.faceArea);
 
     SelectedNode& selected = candidate.selected;
     selected.node = node;
-    selected.pointCount = std::min(std::max(static_cast<std::uint32_t>(points + 0.5), 1u), record.pointCount);
     selected.priority = isRoot ? parentPriority : std::min(parentPriority, static_cast<float>(wanted / given));
     selected.precision = precisionFor(screen.extentPx / volume_.cosHalfDiagonal);
+    selected.pointCount = pointsAt(candidate, 1.0);
+    if (candidate.leaf && !isRoot && selected.pointCount == 0) return std::nullopt;
     return candidate;
   }
 
@@ -87,7 +122,7 @@ class Walk {
     if (children == 0 || first <= parent.selected.node || first + children > nodes_.size()) return;
     for (std::size_t child = first; child < first + children; ++child) {
       ++out.tested;
-      const auto candidate = look(static_cast<std::uint32_t>(child), parent.density, parent.selected.priority);
+      const auto candidate = look(static_cast<std::uint32_t>(child), parent.density(), parent.selected.priority);
       if (!candidate) continue;
       out.heap.push_back(*candidate);
       std::push_heap(out.heap.begin(), out.heap.end(), lessUrgent);
@@ -101,36 +136,77 @@ class Walk {
   const SelectionOptions& options_;
 };
 
+/// Fills the result from what was taken. When that `wanted` more than the budget, thinned by one share everywhere.
+void emit(std::uint64_t wanted, std::uint64_t budget, double highestShare, Selection& out) {
+  out.budgetReached = wanted > budget;
+  const double share = out.budgetReached ? shareWithin(out.taken, budget, highestShare) : 1.0;
+  out.pointsPerPixel *= share;
+  for (const Selection::Candidate& candidate : out.taken) {
+    SelectedNode selected = candidate.selected;
+    selected.pointCount = out.budgetReached ? pointsAt(candidate, share) : selected.pointCount;
+    const bool reached = candidate.root || !out.budgetReached || share * static_cast<double>(selected.priority) > 1.0;
+    if (!reached || (candidate.leaf && !candidate.root && selected.pointCount == 0)) continue;
+    out.pointCount += selected.pointCount;
+    out.nodes.push_back(selected);
+  }
+  if (!out.budgetReached) return;
+  for (std::size_t i = 0, n = 0; i < out.taken.size() && n < out.nodes.size(); ++i) {
+    if (out.taken[i].selected.node != out.nodes[n].node) continue;
+    SelectedNode& selected = out.nodes[n++];
+    const auto more = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(out.taken[i].pointCount - selected.pointCount, budget - out.pointCount));
+    selected.pointCount += more;
+    out.pointCount += more;
+  }
+}
+
 }  // namespace
+
+double Selection::Candidate::density() const {
+  if (pointCount == 0) return given;
+  return given + (areaPerPoint > 0.0 ? 1.0 / areaPerPoint : std::numeric_limits<double>::infinity());
+}
 
 void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
                  const SelectionOptions& options, Selection& out) {
   out.nodes.clear();
   out.heap.clear();
+  out.taken.clear();
   out.pointCount = 0;
   out.tested = 0;
   out.budgetReached = false;
+  out.pointsPerPixel = options.pointsPerPixel;
+  const std::uint64_t budget = std::min(options.pointBudget, SelectionOptions::kMaxPointBudget);
   if (hierarchy.nodes.empty()) return;
+  if (budget == 0) {
+    out.budgetReached = true;
+    return;
+  }
 
   const Walk walk(hierarchy, reach, view, options);
-  const std::uint64_t budget = std::min(options.pointBudget, SelectionOptions::kMaxPointBudget);
   out.tested = 1;
   if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max())) out.heap.push_back(*root);
+  double highestShare = 1.0;
+  std::uint64_t wanted = 0;
+  std::size_t nextCheck = 0;
   while (!out.heap.empty()) {
     std::pop_heap(out.heap.begin(), out.heap.end(), lessUrgent);
-    Selection::Candidate candidate = out.heap.back();
+    const Selection::Candidate candidate = out.heap.back();
     out.heap.pop_back();
-    const std::uint64_t left = budget - out.pointCount;
-    if (candidate.selected.pointCount > left) {
-      out.budgetReached = true;
-      if (left == 0) break;
-      candidate.selected.pointCount = static_cast<std::uint32_t>(left);
+    if (wanted > budget && out.taken.size() >= nextCheck) {
+      // At this share neither the candidate nor anything that is still to come has a point.
+      const double share = 1.0 / static_cast<double>(candidate.selected.priority);
+      if (pointsAt(out.taken, share) >= budget) {
+        highestShare = share;
+        break;
+      }
+      nextCheck = out.taken.size() + out.taken.size() / 8 + 1;
     }
-    out.nodes.push_back(candidate.selected);
-    out.pointCount += candidate.selected.pointCount;
-    if (out.budgetReached) break;
+    out.taken.push_back(candidate);
+    wanted += candidate.selected.pointCount;
     walk.pushChildren(candidate, out);
   }
+  emit(wanted, budget, highestShare, out);
 }
 
 void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out) {

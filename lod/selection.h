@@ -32,12 +32,19 @@ struct Selection {
   std::uint64_t pointCount = 0;     ///< sum over nodes
   std::uint32_t tested = 0;         ///< contours looked at
   bool budgetReached = false;
+  double pointsPerPixel = 0.0;  ///< as wanted, or what the budget leaves of it
 
+  /// A node that is worth drawing, and what its number of points is reckoned from.
   struct Candidate {
     SelectedNode selected;
-    double density = 0.0;  ///< points a square metre, the node's own and its parents', when drawn whole
+    std::uint32_t pointCount = 0;  ///< of the whole node
+    bool root = false, leaf = false, linear = false;
+    double wanted = 0.0;        ///< W of selectNodes(), points a square metre
+    double given = 0.0;         ///< D
+    double areaPerPoint = 0.0;  ///< σ²
+    double density() const;     ///< points a square metre, the node's own and its parents', when drawn whole
   };
-  std::vector<Candidate> heap;  ///< scratch
+  std::vector<Candidate> heap, taken;  ///< scratch
 };
 
 /// Chooses what to draw for a view, best first, as Kanzok 2015, 3.2.2 with the layered density of 3.1: the contour's
@@ -51,7 +58,9 @@ struct Selection {
 ///   taken when  W > D;  points = N clamp((W - D) σ², 1/N, 1);  priority = W / D
 ///
 /// (linear nodes: the same along their length, N (√W - √D) σ.) The count is continuous in the view: a child enters
-/// with its first point. Pure; the same arguments give the same result on any machine with IEEE doubles. Never throws.
+/// with its first point. Where that is more than the budget, q is lowered until it is not: the whole picture gets
+/// thinner by the same share, instead of some nodes being drawn in full and their neighbours not at all. Pure; the same
+/// arguments give the same result on any machine with IEEE doubles. Never throws.
 ///
 /// `reach` is HierarchyIndex::reach, or empty for stores whose contours hold everything below them.
 void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,

@@ -5,7 +5,6 @@
 //   grows
 // VIEWS.json is a camera path whose three keys are the views overview, close and detail. OUT is a folder; it gets
 // tables, plots and pictures.
-#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -125,17 +124,11 @@ class LodPictures {
   std::uint64_t drawn_ = 0;
 };
 
-/// The greatest density whose list is within the budget, so that the points are spread evenly and none is cut.
-SelectionOptions withinBudget(LodPictures& pictures, const View& view, std::uint64_t budget) {
+/// More than any budget here allows, so that the budget decides.
+SelectionOptions withinBudget(std::uint64_t budget) {
   SelectionOptions options;
-  options.pointBudget = SelectionOptions::kMaxPointBudget;
-  double low = -14.0, high = 2.0;  // decimal logarithms: nodes around the eye want millions of times too much
-  for (int step = 0; step < 32; ++step) {
-    const double middle = 0.5 * (low + high);
-    options.pointsPerPixel = std::pow(10.0, middle);
-    (pictures.select(view, options) <= budget ? low : high) = middle;
-  }
-  options.pointsPerPixel = std::pow(10.0, low);
+  options.pointsPerPixel = 64.0;
+  options.pointBudget = budget;
   return options;
 }
 
@@ -218,7 +211,7 @@ void compare(const std::string& out, const std::string& referenceStore, const st
     LodPictures pictures(labelled.substr(equals + 1));
     for (std::size_t v = 0; v < views.size(); ++v)
       for (const std::uint64_t budget : kBudgets) {
-        const std::uint64_t points = pictures.select(views[v], withinBudget(pictures, views[v], budget));
+        const std::uint64_t points = pictures.select(views[v], withinBudget(budget));
         const Frame& frame = pictures.draw(1);
         const PictureQuality thin = pictureQuality(references[v], frame);
         const std::string name = out + "/" + kViewNames[v] + "_" + label + "_" + std::to_string(budget / 1000) + "k";
@@ -275,10 +268,7 @@ void growth(const std::string& out, const std::string& store, const std::string&
   for (std::size_t v = 0; v < views.size(); ++v) {
     Frame last;
     for (double budget = 250e3; budget < 4e6; budget *= 1.01) {
-      SelectionOptions options;
-      options.pointsPerPixel = 64.0;
-      options.pointBudget = static_cast<std::uint64_t>(budget);
-      const std::uint64_t points = pictures.select(views[v], options);
+      const std::uint64_t points = pictures.select(views[v], withinBudget(static_cast<std::uint64_t>(budget)));
       const Frame& frame = pictures.draw(1);
       if (!last.colour.empty()) {
         std::uint64_t changed = 0;

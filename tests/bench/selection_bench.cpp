@@ -15,12 +15,12 @@ const test::Terrain& terrain() {
 }
 
 /// The argument is the wanted points a pixel; the number of nodes goes with it.
-void selectFromTerrain(benchmark::State& state, double height) {
+void selectFromTerrain(benchmark::State& state, double height, std::uint64_t budget = std::uint64_t{1} << 31) {
   const HierarchyIndex index = indexHierarchy(terrain().hierarchy);
   View view = test::viewOfTerrain(terrain().info, 0.5, 0.1, height, 1920, 1080);
   view.target = view.eye + glm::dvec3(0.0, height, -0.4 * height);  // towards the horizon
   SelectionOptions options;
-  options.pointBudget = std::uint64_t{1} << 31;
+  options.pointBudget = budget;
   options.pointsPerPixel = static_cast<double>(state.range(0));
   Selection selection;
   for (auto _ : state) {
@@ -35,8 +35,10 @@ void selectFromTerrain(benchmark::State& state, double height) {
 }
 void overTheGround(benchmark::State& state) { selectFromTerrain(state, 60.0); }
 void highAbove(benchmark::State& state) { selectFromTerrain(state, 1000.0); }
+void withinABudget(benchmark::State& state) { selectFromTerrain(state, 60.0, 5'000'000); }
 
 BENCHMARK(overTheGround)->Arg(1)->Arg(2)->Arg(4)->Arg(16)->Unit(benchmark::kMicrosecond);
+BENCHMARK(withinABudget)->Arg(4)->Arg(16)->Unit(benchmark::kMicrosecond);
 BENCHMARK(highAbove)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMicrosecond);
 
 void indexOfTheHierarchy(benchmark::State& state) {

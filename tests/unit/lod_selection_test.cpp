@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <set>
 
 #include "lod/hierarchy_index.h"
@@ -119,6 +120,51 @@ TEST(Selection, HoldsTheBudgetExactlyAndSaysSo) {
   SelectionOptions none;
   none.pointBudget = 0;
   EXPECT_TRUE(select(terrain.hierarchy, view, none).nodes.empty());
+}
+
+TEST(Selection, UnderABudgetIsThatOfALowerDensity) {
+  const Terrain terrain = makeTerrain({.levels = 6}, false);
+  const View view = viewOfTerrain(terrain.info, 0.5, 0.3, 100.0);
+  SelectionOptions options;
+  options.pointsPerPixel = 8.0;
+  options.pointBudget = select(terrain.hierarchy, view, options).pointCount / 3;
+  const Selection cut = select(terrain.hierarchy, view, options);
+  ASSERT_LT(cut.pointsPerPixel, options.pointsPerPixel);
+
+  SelectionOptions thinner;
+  thinner.pointsPerPixel = cut.pointsPerPixel;
+  const Selection thin = select(terrain.hierarchy, view, thinner);
+  ASSERT_EQ(cut.nodes.size(), thin.nodes.size());
+  EXPECT_GT(static_cast<double>(thin.pointCount), 0.995 * static_cast<double>(options.pointBudget));
+  std::map<std::uint32_t, std::uint32_t> points;
+  for (const SelectedNode& node : thin.nodes) points[node.node] = node.pointCount;
+  for (const SelectedNode& node : cut.nodes) {
+    ASSERT_TRUE(points.contains(node.node));
+    EXPECT_GE(node.pointCount, points[node.node]);  // what the density leaves of the budget is handed out
+  }
+}
+
+TEST(Selection, ChangesLittleWhenTheBudgetDoes) {
+  const Terrain terrain = makeTerrain({.levels = 6}, false);
+  const View view = viewOfTerrain(terrain.info, 0.5, 0.3, 100.0);
+  SelectionOptions options;
+  options.pointsPerPixel = 16.0;
+  const std::uint64_t most = select(terrain.hierarchy, view, options).pointCount;
+  const std::uint32_t whole = terrain.hierarchy.nodes[0].pointCount;
+  std::map<std::uint32_t, std::uint32_t> before;
+  for (double budget = 2000.0; budget < static_cast<double>(most); budget *= 1.01) {
+    options.pointBudget = static_cast<std::uint64_t>(budget);
+    const Selection selection = select(terrain.hierarchy, view, options);
+    std::map<std::uint32_t, std::uint32_t> now;
+    for (const SelectedNode& node : selection.nodes) {
+      now[node.node] = node.pointCount;
+      const std::uint32_t last = before.contains(node.node) ? before[node.node] : 0;
+      if (!before.empty()) {
+        EXPECT_LT(node.pointCount, last + 0.1 * whole + 0.002 * budget) << budget;
+      }
+    }
+    before = std::move(now);
+  }
 }
 
 TEST(Selection, AsksForFewerBitsFarAway) {
