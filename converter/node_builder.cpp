@@ -62,8 +62,9 @@ NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, s
   return out;
 }
 
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, const NodePoints& points, const LevelOrder& levels,
+FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,
                         const Moments& moments, std::span<const SubtreeShape> children) {
+  points.levels = levels.prefix;
   EncodedNode encoded = encodeNode(points, frame.info);
   FinishedNode out;
   out.shape = fitShape(frame, points, moments, children);

@@ -57,7 +57,7 @@ NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, s
 
 /// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); `moments` are of
 /// them and everything below, world; `children` are the shapes of the node's subtrees.
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, const NodePoints& points, const LevelOrder& levels,
+FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,
                         const Moments& moments, std::span<const SubtreeShape> children);
 
 }  // namespace strata

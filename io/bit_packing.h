@@ -3,47 +3,44 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <vector>
 
 namespace strata {
 
 static_assert(std::endian::native == std::endian::little, "stores are little-endian and read in place");
 
-/// Appends fields of 0 to 57 bits, least significant bit first.
+/// Reading and writing touch up to this many bytes behind the last field.
+inline constexpr std::size_t kBitSlack = 8;
+
+/// Writes fields of 0 to 57 bits, least significant bit first. The caller guarantees room and kBitSlack behind it.
 class BitWriter {
  public:
-  explicit BitWriter(std::vector<std::byte>& out) : out_(out) {}
+  explicit BitWriter(std::byte* to) : to_(to) {}
   void put(std::uint64_t value, int bits) {
-    pending_ |= value << pendingBits_;
-    pendingBits_ += bits;
-    if (pendingBits_ >= 64) spill(value, bits);
+    window_ |= value << bits_;
+    bits_ += bits;
+    std::memcpy(to_, &window_, sizeof window_);
+    const int whole = bits_ & ~7;
+    to_ += whole >> 3;
+    window_ = whole < 64 ? window_ >> whole : 0;
+    bits_ &= 7;
   }
-  /// Pads with zeros to a whole byte.
-  void flush() {
-    const auto bytes = static_cast<std::size_t>(pendingBits_ + 7) / 8;
-    append(bytes);
-    pending_ = 0;
-    pendingBits_ = 0;
+  /// Pads with zeros to a whole byte; where the next one goes.
+  std::byte* finish() {
+    if (bits_ > 0) {
+      *to_++ = static_cast<std::byte>(window_);
+      window_ = 0;
+      bits_ = 0;
+    }
+    return to_;
   }
 
  private:
-  void spill(std::uint64_t value, int bits) {
-    append(8);
-    pendingBits_ -= 64;
-    pending_ = pendingBits_ == 0 ? 0 : value >> (bits - pendingBits_);
-  }
-  void append(std::size_t bytes) {
-    const std::size_t at = out_.size();
-    out_.resize(at + bytes);
-    std::memcpy(out_.data() + at, &pending_, bytes);
-  }
-
-  std::vector<std::byte>& out_;
-  std::uint64_t pending_ = 0;
-  int pendingBits_ = 0;
+  std::byte* to_;
+  std::uint64_t window_ = 0;
+  int bits_ = 0;
 };
 
-/// Reads fields of 0 to 57 bits. The caller guarantees 8 readable bytes behind the last field.
+/// Reads fields of 0 to 57 bits. The caller guarantees kBitSlack readable bytes behind the last field.
 class BitReader {
  public:
   explicit BitReader(const std::byte* data) : data_(data) {}

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,11 @@ namespace strata {
 struct NodePoints {
   std::vector<std::int64_t> grid[3];  ///< integers of StoreGrid
   std::vector<std::byte> attributes;  ///< records of StoreInfo::layout
+  /// Points up to and including each level of the level order, the last one all. The codec sorts inside a level, since
+  /// sorted points take fewer bytes. Empty: the points keep the order they have.
+  std::vector<std::uint32_t> levels;
+  /// R | G << 8 | B << 16 of what is drawn where that is not the point's own colour. Empty: its own.
+  std::vector<std::uint32_t> drawColours;
 
   std::size_t count() const { return grid[0].size(); }
 };
@@ -25,7 +31,22 @@ struct EncodedNode {
   std::uint32_t drawBytes[3] = {0, 0, 0};
 };
 
-/// Packs points, in the order given, into batches and planes as docs/format.md says. Lossless.
+/// Working memory of encodeNode, worth keeping from node to node. One thread at a time.
+class EncodeScratch {
+ public:
+  EncodeScratch();
+  ~EncodeScratch();
+  EncodeScratch(EncodeScratch&&) noexcept;
+  struct Buffers;
+  Buffers& buffers() { return *buffers_; }
+
+ private:
+  std::unique_ptr<Buffers> buffers_;
+};
+
+/// Packs points into planes as docs/format.md says. Lossless but for the order inside a level, which becomes one of 16
+/// interleaved passes over the level's Morton order (node_payload.h), so that prefixes inside a level are even too.
+EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info, EncodeScratch& scratch);
 EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info);
 
 /// How many leading bytes of the payload a drawing at `precision` has to fetch.
@@ -38,7 +59,7 @@ std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
                       Precision precision, NodeData& out);
 
-/// Decodes everything, exactly as it went into encodeNode. Throws Error as above.
+/// Decodes everything, in drawing order and without drawColours. Throws Error as above.
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload);
 
 /// Reads from the store's points and decodes.

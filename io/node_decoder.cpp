@@ -1,13 +1,16 @@
-#include <lz4.h>
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "core/error.h"
+#include "io/attribute_codec.h"
 #include "io/bit_packing.h"
+#include "io/colour_codec.h"
 #include "io/node_codec.h"
 #include "io/node_payload.h"
+#include "io/position_codec.h"
 
 namespace strata {
 namespace {
@@ -18,29 +21,29 @@ class PayloadReader {
   PayloadReader(const NodeRecord& record, std::span<const std::byte> payload) : record_(record), payload_(payload) {
     if (payload.size() < record.headBytes || record.headBytes < sizeof(PayloadHead)) fail("truncated payload head");
     if (XXH3_64bits(payload.data(), record.headBytes) != record.headChecksum) fail("payload head checksum mismatch");
-    PayloadHead head;
-    std::memcpy(&head, payload.data(), sizeof head);
+    std::memcpy(&head_, payload.data(), sizeof head_);
     const std::size_t expected =
-        sizeof head + head.batchCount * sizeof(PayloadBatch) + head.planeCount * sizeof(PayloadPlane);
+        sizeof head_ + head_.levelCount * sizeof(std::uint32_t) + head_.planeCount * sizeof(PayloadPlane);
     if (expected != record.headBytes) fail("payload head has the wrong size");
-    batches_.resize(head.batchCount);
-    planes_.resize(head.planeCount);
-    if (!batches_.empty())
-      std::memcpy(batches_.data(), payload.data() + sizeof head, batches_.size() * sizeof(PayloadBatch));
-    if (!planes_.empty())
-      std::memcpy(planes_.data(), payload.data() + sizeof head + batches_.size() * sizeof(PayloadBatch),
-                  planes_.size() * sizeof(PayloadPlane));
-    checkBatches(head.pointCount);
+    levelEnds_.resize(head_.levelCount);
+    planes_.resize(head_.planeCount);
+    const std::byte* from = payload.data() + sizeof head_;
+    if (!levelEnds_.empty()) std::memcpy(levelEnds_.data(), from, levelEnds_.size() * sizeof(std::uint32_t));
+    from += levelEnds_.size() * sizeof(std::uint32_t);
+    if (!planes_.empty()) std::memcpy(planes_.data(), from, planes_.size() * sizeof(PayloadPlane));
+    checkHead();
   }
 
   [[noreturn]] void fail(const std::string& what) const {
     throw Error("points.bin", "node " + NodeKey{record_.key}.text() + ": " + what);
   }
-  const std::vector<PayloadBatch>& batches() const { return batches_; }
+  const PayloadHead& head() const { return head_; }
+  std::span<const std::uint32_t> levelEnds() const { return levelEnds_; }
   std::size_t pointCount() const { return record_.pointCount; }
   bool has(std::uint16_t id) const {
     return std::any_of(planes_.begin(), planes_.end(), [id](const PayloadPlane& p) { return p.id == id; });
   }
+  std::vector<std::uint8_t>& spare() { return spare_; }
 
   /// False as well where the bytes at hand end before the plane does.
   bool holds(std::uint16_t id) const {
@@ -52,203 +55,253 @@ class PayloadReader {
     return false;
   }
 
-  /// The decoded bytes of a plane, with 8 readable bytes behind them; valid until the next call.
-  std::span<const std::byte> plane(std::uint16_t id, std::size_t rawBytes, std::size_t elementBytes) {
+  /// The stored bytes of a plane, checked, with kBitSlack readable bytes behind them; valid until the next call.
+  struct Plane {
+    PlaneEncoding encoding;
+    std::span<const std::byte> stored;
+  };
+  Plane plane(std::uint16_t id) {
     std::size_t offset = record_.headBytes;
     for (const PayloadPlane& p : planes_) {
-      if (p.id == id) return decode(p, offset, rawBytes, elementBytes);
-      offset += p.storedBytes;
+      if (p.id != id) {
+        offset += p.storedBytes;
+        continue;
+      }
+      if (offset > payload_.size() || p.storedBytes > payload_.size() - offset) fail("truncated plane");
+      const std::span<const std::byte> stored = payload_.subspan(offset, p.storedBytes);
+      if (XXH3_64bits(stored.data(), stored.size()) != p.checksum) fail("block checksum mismatch");
+      stored_.resize(stored.size() + kBitSlack);
+      std::copy(stored.begin(), stored.end(), stored_.begin());
+      return {static_cast<PlaneEncoding>(p.encoding), std::span(stored_).first(stored.size())};
     }
     fail("plane " + std::to_string(id) + " is missing");
   }
 
- private:
-  void checkBatches(std::uint32_t headCount) const {
-    std::uint64_t points = 0;
-    for (const PayloadBatch& batch : batches_) {
-      if (batch.pointCount == 0 || batch.pointCount > Batch::kMaxPoints) fail("batch with a wrong number of points");
-      for (const std::uint8_t bits : batch.bits)
-        if (bits > kMaxCoordinateBits) fail("batch with too many bits");
-      points += batch.pointCount;
+  /// Values of all points from stored into drawing order.
+  template <class T>
+  void toDrawingOrder(const std::vector<T>& stored, T* drawn) const {
+    std::size_t first = 0;
+    for (const std::uint32_t end : levelEnds_) {
+      interleaveLevel(stored.data() + first, end - first, drawn + first);
+      first = end;
     }
-    if (points != record_.pointCount || headCount != record_.pointCount)
-      fail("point count does not match, found " + std::to_string(points) + " (expected " +
-           std::to_string(record_.pointCount) + ")");
+    if (levelEnds_.empty()) std::copy(stored.begin(), stored.end(), drawn);
   }
 
-  std::span<const std::byte> decode(const PayloadPlane& p, std::size_t offset, std::size_t rawBytes,
-                                    std::size_t elementBytes) {
-    if (offset > payload_.size() || p.storedBytes > payload_.size() - offset) fail("truncated plane");
-    const std::span<const std::byte> stored = payload_.subspan(offset, p.storedBytes);
-    if (XXH3_64bits(stored.data(), stored.size()) != p.checksum) fail("block checksum mismatch");
-    if (p.rawBytes != rawBytes) fail("plane has the wrong size");
-    raw_.resize(rawBytes + 8);
-    std::memset(raw_.data() + rawBytes, 0, 8);
-    switch (p.encoding) {
-      case kConstant: {
-        if (elementBytes == 0 || stored.size() != elementBytes) fail("constant plane has the wrong size");
-        const std::size_t count = rawBytes / elementBytes;
-        for (std::size_t b = 0; b < elementBytes; ++b)
-          std::memset(raw_.data() + b * count, static_cast<int>(stored[b]), count);
-        break;
-      }
-      case kRaw:
-        if (stored.size() != rawBytes) fail("raw plane has the wrong size");
-        if (rawBytes > 0) std::memcpy(raw_.data(), stored.data(), rawBytes);
-        break;
-      case kLz4:
-        if (LZ4_decompress_safe(reinterpret_cast<const char*>(stored.data()), reinterpret_cast<char*>(raw_.data()),
-                                static_cast<int>(stored.size()),
-                                static_cast<int>(rawBytes)) != static_cast<int>(rawBytes))
-          fail("block does not decompress");
-        break;
-      default:
-        fail("plane with an unknown encoding");
+ private:
+  void checkHead() const {
+    if (head_.pointCount != record_.pointCount)
+      fail("point count does not match, found " + std::to_string(head_.pointCount) + " (expected " +
+           std::to_string(record_.pointCount) + ")");
+    if (head_.pointCount > kMaxNodePoints) fail("too many points");
+    for (int axis = 0; axis < 3; ++axis)
+      if (head_.bits[axis] > kMaxCoordinateBits || head_.start[axis] > kOctreeLevels) fail("bounds with too many bits");
+    std::uint32_t before = 0;
+    for (const std::uint32_t end : levelEnds_) {
+      if (end <= before || end > head_.pointCount) fail("levels do not ascend");
+      before = end;
     }
-    return {raw_.data(), rawBytes};
+    if (!levelEnds_.empty() && before != head_.pointCount) fail("levels do not end at the point count");
   }
 
   const NodeRecord& record_;
   std::span<const std::byte> payload_;
-  std::vector<PayloadBatch> batches_;
+  PayloadHead head_;
+  std::vector<std::uint32_t> levelEnds_;
   std::vector<PayloadPlane> planes_;
-  std::vector<std::byte> raw_;
+  std::vector<std::byte> stored_;
+  std::vector<std::uint8_t> spare_;
 };
 
-std::size_t positionBytes(const std::vector<PayloadBatch>& batches, int plane) {
-  std::uint64_t total = 0;
-  for (const PayloadBatch& batch : batches) total += packedBytes(batch, plane);
-  return static_cast<std::size_t>(total);
+/// Plane 0 in stored order, aligned to the top of 10 bits.
+std::vector<Lanes> leadingPositions(PayloadReader& payload) {
+  std::vector<Lanes> out(payload.pointCount());
+  const PayloadReader::Plane plane = payload.plane(kPosition10);
+  const bool fits = plane.encoding == kOctree ? decodeOctree(payload.head(), payload.levelEnds(), plane.stored, out)
+                                              : plane.encoding == kPacked && payload.levelEnds().empty() &&
+                                                    decodePacked(payload.head(), plane.stored, out);
+  if (!fits) payload.fail("positions do not decode");
+  return out;
 }
 
-/// Where the 10 bits of a plane stand in its packed field: shown = (field << left) >> right.
-struct DrawShift {
-  int left = 0, right = 0;
-};
-DrawShift drawShift(int bits, int plane) {
-  if (plane < 2) return {std::max(0, 10 - std::max(0, bits - 10 * plane)), 0};
-  return bits <= 30 ? DrawShift{30 - std::max(bits, 20), 0} : DrawShift{0, bits - 30};
+/// The checked bit fields of plane 1 or 2.
+std::span<const std::byte> packedPositions(PayloadReader& payload, int plane) {
+  const PayloadReader::Plane found = payload.plane(static_cast<std::uint16_t>(kPosition10 + plane));
+  const std::size_t expected = packedBytes(payload.pointCount(), planeWidths(payload.head(), plane).sum());
+  if (found.encoding != kPacked || found.stored.size() != expected) payload.fail("positions do not decode");
+  return found.stored;
 }
 
-void unpackForDrawing(PayloadReader& payload, int plane, std::vector<std::uint32_t>& out) {
-  const std::span<const std::byte> raw =
-      payload.plane(static_cast<std::uint16_t>(kPosition10 + plane), positionBytes(payload.batches(), plane), 0);
-  out.resize(payload.pointCount());
-  const std::byte* data = raw.data();
-  std::size_t i = 0;
-  for (const PayloadBatch& batch : payload.batches()) {
-    BitReader reader(data);
-    int width[3];
-    DrawShift shift[3];
+/// Plane 1 or 2 in stored order: its leading 10 bits of each axis.
+std::vector<Lanes> finerPositions(PayloadReader& payload, int plane) {
+  const std::span<const std::byte> stored = packedPositions(payload, plane);
+  const FieldWidths widths = planeWidths(payload.head(), plane);
+  std::vector<Lanes> out(payload.pointCount());
+  BitReader reader(stored.data());
+  for (Lanes& point : out) {
+    Lanes lanes = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      width[axis] = planeBits(batch.bits[axis], plane);
-      shift[axis] = drawShift(batch.bits[axis], plane);
+      const int width = widths.axis[axis];
+      const std::uint64_t field = reader.get(width);
+      lanes |= static_cast<Lanes>(width <= 10 ? field << (10 - width) : field >> (width - 10)) << (10 * axis);
     }
-    for (const std::size_t end = i + batch.pointCount; i < end; ++i) {
-      std::uint64_t packed = 0;
+    point = lanes;
+  }
+  return out;
+}
+
+/// Offsets from the minimum, in stored order.
+void decodeOffsets(PayloadReader& payload, std::vector<std::uint64_t> (&offsets)[3]) {
+  const PayloadHead& head = payload.head();
+  const std::vector<Lanes> leading = leadingPositions(payload);
+  for (int axis = 0; axis < 3; ++axis) {
+    offsets[axis].resize(leading.size());
+    const int below = 10 - planeBits(head.bits[axis], 0);
+    for (std::size_t i = 0; i < leading.size(); ++i) offsets[axis][i] = (leading[i] >> (10 * axis) & 1023u) >> below;
+  }
+  for (int plane = 1; plane < 3; ++plane) {
+    const FieldWidths widths = planeWidths(head, plane);
+    BitReader reader(packedPositions(payload, plane).data());
+    for (std::size_t i = 0; i < leading.size(); ++i)
       for (int axis = 0; axis < 3; ++axis)
-        packed |= (reader.get(width[axis]) << shift[axis].left >> shift[axis].right) << (10 * axis);
-      out[i] = static_cast<std::uint32_t>(packed);
-    }
-    data += packedBytes(batch, plane);
+        offsets[axis][i] = offsets[axis][i] << widths.axis[axis] | reader.get(widths.axis[axis]);
   }
 }
 
-void addPositions(PayloadReader& payload, int plane, NodePoints& points) {
-  const std::span<const std::byte> raw =
-      payload.plane(static_cast<std::uint16_t>(kPosition10 + plane), positionBytes(payload.batches(), plane), 0);
-  const std::byte* data = raw.data();
-  std::size_t i = 0;
-  for (const PayloadBatch& batch : payload.batches()) {
-    BitReader reader(data);
-    int width[3];
-    for (int axis = 0; axis < 3; ++axis) width[axis] = planeBits(batch.bits[axis], plane);
-    for (const std::size_t end = i + batch.pointCount; i < end; ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        points.grid[axis][i] = points.grid[axis][i] << width[axis] | static_cast<std::int64_t>(reader.get(width[axis]));
-    data += packedBytes(batch, plane);
+template <class T>
+void decodeComponent(PayloadReader& payload, const PayloadReader::Plane& plane, std::span<const std::byte>& rest,
+                     std::vector<T>& stored, std::vector<T>& drawn) {
+  stored.resize(payload.pointCount());
+  drawn.resize(payload.pointCount());
+  if (plane.encoding != kColumns || !takeComponent(rest, payload.spare(), std::span<T>(stored)))
+    payload.fail("attribute does not decode");
+  payload.toDrawingOrder(stored, drawn.data());
+}
+
+template <class T>
+void decodeColumns(PayloadReader& payload, const PayloadReader::Plane& plane, const Attribute& attribute,
+                   std::size_t stride, std::byte* first) {
+  std::span<const std::byte> rest = plane.stored;
+  std::vector<T> stored, drawn;
+  for (std::size_t c = 0; c < attribute.components; ++c) {
+    decodeComponent(payload, plane, rest, stored, drawn);
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+      std::memcpy(first + i * stride + c * sizeof(T), &drawn[i], sizeof(T));
+  }
+  if (!rest.empty()) payload.fail("attribute does not decode");
+}
+
+/// Into the records from `first` on.
+void decodeAttribute(PayloadReader& payload, int layoutIndex, const Attribute& attribute, std::size_t stride,
+                     std::byte* first) {
+  const PayloadReader::Plane plane = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + layoutIndex));
+  if (plane.encoding == kConstant) {
+    if (plane.stored.size() != attribute.bytes()) payload.fail("constant plane has the wrong size");
+    for (std::size_t i = 0; i < payload.pointCount(); ++i)
+      std::memcpy(first + i * stride, plane.stored.data(), plane.stored.size());
+    return;
+  }
+  switch (scalarBytes(attribute.type)) {
+    case 1:
+      return decodeColumns<std::uint8_t>(payload, plane, attribute, stride, first);
+    case 2:
+      return decodeColumns<std::uint16_t>(payload, plane, attribute, stride, first);
+    case 4:
+      return decodeColumns<std::uint32_t>(payload, plane, attribute, stride, first);
+    default:
+      return decodeColumns<std::uint64_t>(payload, plane, attribute, stride, first);
   }
 }
 
-void scatterColumns(std::span<const std::byte> raw, std::size_t stride, std::size_t offset, std::size_t bytes,
-                    NodePoints& points) {
-  const std::size_t count = points.count();
-  for (std::size_t b = 0; b < bytes; ++b)
-    for (std::size_t i = 0; i < count; ++i) points.attributes[i * stride + offset + b] = raw[b * count + i];
+/// One-component attribute for drawing.
+template <class T>
+void decodeValues(PayloadReader& payload, int layoutIndex, std::vector<T>& out) {
+  const PayloadReader::Plane plane = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + layoutIndex));
+  if (plane.encoding == kConstant) {
+    T value;
+    if (plane.stored.size() != sizeof value) payload.fail("constant plane has the wrong size");
+    std::memcpy(&value, plane.stored.data(), sizeof value);
+    out.assign(payload.pointCount(), value);
+    return;
+  }
+  std::span<const std::byte> rest = plane.stored;
+  std::vector<T> stored;
+  decodeComponent(payload, plane, rest, stored, out);
+  if (!rest.empty()) payload.fail("attribute does not decode");
 }
 
-void decodeColour(PayloadReader& payload, const StoreInfo& info, std::size_t offset, NodePoints& points) {
-  const std::size_t count = points.count();
-  const std::size_t stride = info.layout.stride();
-  const auto value = [&](std::size_t i, std::size_t channel) {
-    return points.attributes.data() + i * stride + offset + 2 * channel;
-  };
+void decodeDrawnColours(PayloadReader& payload, std::vector<std::uint32_t>& out) {
+  const PayloadReader::Plane plane = payload.plane(kColour);
+  std::vector<std::uint32_t> stored(payload.pointCount());
+  if (plane.encoding != kColumns || !decodeColours(plane.stored, payload.spare(), stored))
+    payload.fail("colours do not decode");
+  out.resize(stored.size());
+  payload.toDrawingOrder(stored, out.data());
+}
+
+/// rgb of every record from its drawn colour and the residual.
+void decodeRgb(PayloadReader& payload, const StoreInfo& info, std::size_t offset, std::vector<std::byte>& records) {
+  const std::size_t count = payload.pointCount(), stride = info.layout.stride();
   const int ownShift = info.layout.find(attribute::kColourShift);
-  const auto shift = [&](std::size_t i) {
-    if (ownShift < 0) return info.colourShift;
-    return static_cast<int>(points.attributes[i * stride + info.layout.offset(static_cast<std::size_t>(ownShift))]) &
-           15;
-  };
-  std::span<const std::byte> raw = payload.plane(kColour, count * 3, 3);
-  for (std::size_t channel = 0; channel < 3; ++channel)
+  std::vector<std::uint32_t> colours;
+  decodeDrawnColours(payload, colours);
+  const PayloadReader::Plane plane = payload.plane(kColourResidual);
+  std::uint16_t unitCode = 0;
+  if (plane.stored.size() < sizeof unitCode) payload.fail("colours do not decode");
+  std::memcpy(&unitCode, plane.stored.data(), sizeof unitCode);
+  const auto unit = static_cast<ResidualUnit>(unitCode);
+  if (unit != ResidualUnit::shifted && unit != ResidualUnit::upper && unit != ResidualUnit::repeated)
+    payload.fail("colours do not decode");
+  std::span<const std::byte> rest = plane.stored.subspan(sizeof unitCode);
+  std::vector<std::uint16_t> stored, residuals(count, 0);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (plane.encoding != kConstant) decodeComponent(payload, plane, rest, stored, residuals);
     for (std::size_t i = 0; i < count; ++i) {
-      const auto shown = static_cast<std::uint16_t>(static_cast<unsigned>(raw[channel * count + i]) << shift(i));
-      std::memcpy(value(i, channel), &shown, sizeof shown);
+      std::byte* record = records.data() + i * stride;
+      const int shift = ownShift < 0
+                            ? info.colourShift
+                            : static_cast<int>(record[info.layout.offset(static_cast<std::size_t>(ownShift))]) & 15;
+      const std::uint16_t value = valueOf(unit, residuals[i], colours[i] >> (8 * c) & 255u, shift);
+      std::memcpy(record + offset + 2 * c, &value, sizeof value);
     }
-  raw = payload.plane(kColourResidual, count * 6, 6);
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    for (std::size_t i = 0; i < count; ++i) {
-      std::uint16_t sum;
-      std::memcpy(&sum, value(i, channel), sizeof sum);
-      sum = static_cast<std::uint16_t>(sum + static_cast<unsigned>(raw[2 * channel * count + i]) +
-                                       (static_cast<unsigned>(raw[(2 * channel + 1) * count + i]) << 8));
-      std::memcpy(value(i, channel), &sum, sizeof sum);
-    }
+  }
+  if (!rest.empty()) payload.fail("colours do not decode");
 }
 
-void describeBatches(const std::vector<PayloadBatch>& batches, const StoreInfo& info, NodeData& out) {
+/// All batches have the node's box: each holds whole passes over it, so that a tighter one would hardly be smaller.
+void describeBatches(const PayloadHead& head, const StoreInfo& info, NodeData& out) {
   const Box cube = nodeCube(out.key, info.rootCube());
   out.origin = cube.min;
   out.batches.clear();
-  std::uint32_t first = 0;
-  for (const PayloadBatch& stored : batches) {
-    Batch batch;
-    batch.firstPoint = first;
-    batch.pointCount = stored.pointCount;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double corner = std::round((cube.min[axis] - info.grid.offset[axis]) / info.grid.scale[axis]);
-      batch.boxMin[axis] = (static_cast<double>(stored.min[axis]) - corner) * info.grid.scale[axis];
-      batch.boxSize[axis] = std::ldexp(info.grid.scale[axis], stored.bits[axis]);
-      batch.bits[axis] = stored.bits[axis];
-    }
+  Batch batch;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double corner = std::round((cube.min[axis] - info.grid.offset[axis]) / info.grid.scale[axis]);
+    batch.boxMin[axis] = (static_cast<double>(head.min[axis]) - corner) * info.grid.scale[axis];
+    batch.boxSize[axis] = std::ldexp(info.grid.scale[axis], head.bits[axis]);
+    batch.bits[axis] = head.bits[axis];
+  }
+  for (; batch.firstPoint < head.pointCount; batch.firstPoint += Batch::kMaxPoints) {
+    batch.pointCount = std::min(Batch::kMaxPoints, head.pointCount - batch.firstPoint);
     out.batches.push_back(batch);
-    first += stored.pointCount;
   }
 }
 
 /// What only some ways of drawing look at, where the bytes at hand hold it.
 void decodeShown(PayloadReader& payload, const StoreInfo& info, NodeData& out) {
-  const std::size_t count = payload.pointCount();
   out.returnNumber.clear();
   out.normal.clear();
-  const auto planeOf = [&](std::string_view name) {
-    return static_cast<std::uint16_t>(kFirstAttributePlane + std::max(info.layout.find(name), 0));
+  const auto atHand = [&](int index) {
+    return index >= 0 && payload.holds(static_cast<std::uint16_t>(kFirstAttributePlane + index));
   };
-  if (info.layout.find(attribute::kReturnNumber) >= 0 && payload.holds(planeOf(attribute::kReturnNumber))) {
-    const auto raw = payload.plane(planeOf(attribute::kReturnNumber), count, 1);
-    out.returnNumber.resize(count);
-    std::memcpy(out.returnNumber.data(), raw.data(), count);
-  }
-  if (info.layout.find(attribute::kNormal) >= 0 && payload.holds(planeOf(attribute::kNormal))) {
-    const auto raw = payload.plane(planeOf(attribute::kNormal), count * 12, 12);
-    out.normal.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      std::byte bytes[12];
-      for (std::size_t b = 0; b < 12; ++b) bytes[b] = raw[b * count + i];
-      float xyz[3];
-      std::memcpy(xyz, bytes, sizeof xyz);
-      out.normal[i] = packNormal({xyz[0], xyz[1], xyz[2]});
-    }
+  if (const int index = info.layout.find(attribute::kReturnNumber); atHand(index))
+    decodeValues(payload, index, out.returnNumber);
+  if (const int index = info.layout.find(attribute::kNormal); atHand(index)) {
+    std::vector<float> xyz(3 * payload.pointCount());
+    decodeAttribute(payload, index, info.layout.attributes()[static_cast<std::size_t>(index)], 3 * sizeof(float),
+                    std::as_writable_bytes(std::span(xyz)).data());
+    out.normal.resize(payload.pointCount());
+    for (std::size_t i = 0; i < out.normal.size(); ++i)
+      out.normal[i] = packNormal({xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
   }
 }
 
@@ -261,37 +314,25 @@ std::uint32_t drawBytes(const NodeRecord& record, Precision precision) {
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> bytes,
                       Precision precision, NodeData& out) {
   PayloadReader payload(record, bytes);
-  const std::size_t count = payload.pointCount();
   out.key = NodeKey{record.key};
-  describeBatches(payload.batches(), info, out);
+  describeBatches(payload.head(), info, out);
   for (int plane = 0; plane < 3; ++plane) {
-    if (plane < static_cast<int>(precision))
-      unpackForDrawing(payload, plane, out.position[plane]);
-    else
+    if (plane >= static_cast<int>(precision)) {
       out.position[plane].clear();
+      continue;
+    }
+    const std::vector<Lanes> stored = plane == 0 ? leadingPositions(payload) : finerPositions(payload, plane);
+    out.position[plane].resize(stored.size());
+    payload.toDrawingOrder(stored, out.position[plane].data());
   }
   out.colour.clear();
   out.intensity.clear();
   out.classification.clear();
-  if (payload.has(kColour)) {
-    const std::span<const std::byte> raw = payload.plane(kColour, count * 3, 3);
-    out.colour.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-      out.colour[i] = static_cast<std::uint32_t>(raw[i]) | static_cast<std::uint32_t>(raw[count + i]) << 8 |
-                      static_cast<std::uint32_t>(raw[2 * count + i]) << 16 | 0xff000000u;
-  }
-  if (const int index = info.layout.find(attribute::kIntensity); index >= 0) {
-    const auto raw = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + index), count * 2, 2);
-    out.intensity.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-      out.intensity[i] =
-          static_cast<std::uint16_t>(static_cast<unsigned>(raw[i]) | static_cast<unsigned>(raw[count + i]) << 8);
-  }
-  if (const int index = info.layout.find(attribute::kClassification); index >= 0) {
-    const auto raw = payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + index), count, 1);
-    out.classification.resize(count);
-    std::memcpy(out.classification.data(), raw.data(), count);
-  }
+  if (payload.has(kColour)) decodeDrawnColours(payload, out.colour);
+  if (const int index = info.layout.find(attribute::kIntensity); index >= 0)
+    decodeValues(payload, index, out.intensity);
+  if (const int index = info.layout.find(attribute::kClassification); index >= 0)
+    decodeValues(payload, index, out.classification);
   decodeShown(payload, info, out);
 }
 
@@ -299,25 +340,26 @@ NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<
   PayloadReader payload(record, bytes);
   const std::size_t count = payload.pointCount();
   NodePoints points;
-  for (auto& axis : points.grid) axis.assign(count, 0);
-  points.attributes.resize(count * info.layout.stride());
-  for (int plane = 0; plane < 3; ++plane) addPositions(payload, plane, points);
-  std::size_t i = 0;
-  for (const PayloadBatch& batch : payload.batches())
-    for (const std::size_t end = i + batch.pointCount; i < end; ++i)
-      for (int axis = 0; axis < 3; ++axis) points.grid[axis][i] += batch.min[axis];
+  std::vector<std::uint64_t> offsets[3];
+  decodeOffsets(payload, offsets);
+  std::vector<std::uint64_t> drawn(count);
+  for (int axis = 0; axis < 3; ++axis) {
+    payload.toDrawingOrder(offsets[axis], drawn.data());
+    points.grid[axis].resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+      points.grid[axis][i] = payload.head().min[axis] + static_cast<std::int64_t>(drawn[i]);
+  }
+  points.levels.assign(payload.levelEnds().begin(), payload.levelEnds().end());
 
   const PointLayout& layout = info.layout;
-  for (std::size_t a = 0; a < layout.attributes().size(); ++a) {
-    const Attribute& column = layout.attributes()[a];
-    if (column.name == attribute::kRgb) continue;
-    const auto raw =
-        payload.plane(static_cast<std::uint16_t>(kFirstAttributePlane + a), count * column.bytes(), column.bytes());
-    scatterColumns(raw, layout.stride(), layout.offset(a), column.bytes(), points);
-  }
+  points.attributes.resize(count * layout.stride());
+  for (std::size_t a = 0; a < layout.attributes().size(); ++a)
+    if (layout.attributes()[a].name != attribute::kRgb)
+      decodeAttribute(payload, static_cast<int>(a), layout.attributes()[a], layout.stride(),
+                      points.attributes.data() + layout.offset(a));
   // Last, since a point's colour shift may be an attribute.
   if (const int rgb = layout.find(attribute::kRgb); rgb >= 0)
-    decodeColour(payload, info, layout.offset(static_cast<std::size_t>(rgb)), points);
+    decodeRgb(payload, info, layout.offset(static_cast<std::size_t>(rgb)), points.attributes);
   return points;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -13,44 +14,46 @@ namespace strata {
 /// The on-disk parts of a node's payload (docs/format.md, "Payload"). Shared by the encoder and the decoder.
 
 #pragma pack(push, 1)
+/// Followed by u32[levelCount], the points up to and including each level, then by the directory of planes.
 struct PayloadHead {
   std::uint32_t pointCount;
-  std::uint16_t batchCount;
+  std::uint16_t levelCount;  ///< 0: stored in drawing order
   std::uint16_t planeCount;
-};
-struct PayloadBatch {
-  std::int64_t min[3];  ///< grid integers
-  std::uint32_t pointCount;
-  std::uint8_t bits[3];  ///< of (grid - min), 0 to 63 an axis
-  std::uint8_t reserved;
+  std::int64_t min[3];    ///< grid integers
+  std::uint8_t bits[3];   ///< of (grid - min), 0 to 52 an axis
+  std::uint8_t start[3];  ///< octree level from which on an axis is halved: long axes first, so that cells are cubes
+  std::uint16_t reserved;
 };
 struct PayloadPlane {
   std::uint16_t id;        ///< PlaneId, or kFirstAttributePlane + index in the layout
   std::uint16_t encoding;  ///< PlaneEncoding
-  std::uint32_t rawBytes;  ///< after decoding
   std::uint32_t storedBytes;
-  std::uint32_t reserved;
   std::uint64_t checksum;  ///< XXH3-64 of the stored bytes
 };
 #pragma pack(pop)
-static_assert(sizeof(PayloadHead) == 8 && sizeof(PayloadBatch) == 32 && sizeof(PayloadPlane) == 24);
+static_assert(sizeof(PayloadHead) == 40 && sizeof(PayloadPlane) == 16);
 
 /// Only this many bits of a coordinate can be packed; a store's grid never needs more (cubeBits <= 52).
 inline constexpr int kMaxCoordinateBits = 52;
+/// Levels of the octree over leading bits; an axis that starts at this one takes no part in it.
+inline constexpr int kOctreeLevels = 10;
+/// Most points of a node: columns have 24-bit lengths.
+inline constexpr std::uint32_t kMaxNodePoints = (1u << 24) - 1;
 
 enum PlaneId : std::uint16_t {
   kPosition10 = 0,      ///< the 10 leading bits an axis
   kPosition20 = 1,      ///< the next 10
   kPosition30 = 2,      ///< all that remain
   kColour = 3,          ///< 8-bit red, green, blue
-  kColourResidual = 4,  ///< u16 x 3: rgb - (colour << colourShift)
+  kColourResidual = 4,  ///< what the drawn colour leaves of rgb
   kFirstAttributePlane = 16,
 };
 
 enum PlaneEncoding : std::uint16_t {
   kConstant = 0,  ///< one element, the same for all points
-  kRaw = 1,
-  kLz4 = 2,
+  kPacked = 1,    ///< bit fields of positions, io/bit_packing.h
+  kOctree = 2,    ///< leading bits of sorted positions, io/position_codec.h
+  kColumns = 3,   ///< columns of bytes, io/column_codec.h
 };
 
 /// Bits of an axis with `bits` that stand in position plane 0, 1 or 2.
@@ -60,11 +63,27 @@ inline int planeBits(int bits, int plane) {
   return bits < 20 ? 0 : bits - 20;
 }
 
-/// Bytes that a batch takes in a position plane.
-inline std::uint64_t packedBytes(const PayloadBatch& batch, int plane) {
-  std::uint64_t bits = 0;
-  for (const std::uint8_t axisBits : batch.bits) bits += static_cast<std::uint64_t>(planeBits(axisBits, plane));
-  return (bits * batch.pointCount + 7) / 8;
+/// Widths of the three fields of a point in a position plane.
+struct FieldWidths {
+  int axis[3];
+  int sum() const { return axis[0] + axis[1] + axis[2]; }
+};
+inline FieldWidths planeWidths(const PayloadHead& head, int plane) {
+  return {planeBits(head.bits[0], plane), planeBits(head.bits[1], plane), planeBits(head.bits[2], plane)};
+}
+inline std::size_t packedBytes(std::size_t count, int bitsAPoint) {
+  return (count * static_cast<std::size_t>(bitsAPoint) + 7) / 8;
+}
+
+/// The points of a level stand in Morton order; drawn, they come in 16 passes over that order, so that a prefix which
+/// ends inside a level is even too. Each pass falls in the middle of the widest gap that the ones before have left.
+inline constexpr std::array<std::uint32_t, 16> kPasses{0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+
+/// Values of one level from stored to drawing order.
+template <class T>
+void interleaveLevel(const T* stored, std::size_t count, T* drawn) {
+  for (const std::size_t pass : kPasses)
+    for (std::size_t i = pass; i < count; i += kPasses.size()) *drawn++ = stored[i];
 }
 
 }  // namespace strata

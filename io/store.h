@@ -14,7 +14,7 @@
 
 namespace strata {
 
-inline constexpr int kStoreVersion = 1;
+inline constexpr int kStoreVersion = 2;
 
 /// What an attribute holds in this store, over all points (of the first component's range for vectors: all of them).
 struct AttributeRange {

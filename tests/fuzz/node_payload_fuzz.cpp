@@ -1,12 +1,10 @@
 // Payload decoder against arbitrary bytes. Checksums are made right first, so that the fuzzer gets behind them.
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cstring>
 
 #include "core/error.h"
 #include "io/node_codec.h"
-#include "io/node_payload.h"
+#include "tests/support/sign_payload.h"
 
 namespace {
 
@@ -20,23 +18,6 @@ strata::StoreInfo storeInfo() {
   return info;
 }
 
-void signPlanes(std::vector<std::byte>& payload, std::size_t headBytes) {
-  strata::PayloadHead head;
-  if (headBytes < sizeof head) return;
-  std::memcpy(&head, payload.data(), sizeof head);
-  std::size_t at = sizeof head + head.batchCount * sizeof(strata::PayloadBatch);
-  std::size_t body = headBytes;
-  for (int p = 0; p < head.planeCount && at + sizeof(strata::PayloadPlane) <= headBytes; ++p) {
-    strata::PayloadPlane plane;
-    std::memcpy(&plane, payload.data() + at, sizeof plane);
-    if (body + plane.storedBytes > payload.size()) return;
-    plane.checksum = XXH3_64bits(payload.data() + body, plane.storedBytes);
-    std::memcpy(payload.data() + at, &plane, sizeof plane);
-    body += plane.storedBytes;
-    at += sizeof plane;
-  }
-}
-
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -48,12 +29,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::byte> payload(size - 4);
   if (!payload.empty()) std::memcpy(payload.data(), data + 4, payload.size());
   headBytes = static_cast<std::uint16_t>(std::min<std::size_t>(headBytes, payload.size()));
-  signPlanes(payload, headBytes);
+  strata::test::signPayload(payload, headBytes);
   strata::NodeRecord record{};
   record.key = 1;
   record.pointCount = points;
   record.headBytes = headBytes;
-  record.headChecksum = XXH3_64bits(payload.data(), headBytes);
+  record.headChecksum = strata::test::checksumOf(std::span(payload).first(headBytes));
   record.payloadBytes = static_cast<std::uint32_t>(payload.size());
   for (const auto precision : {strata::Precision::low10, strata::Precision::full30}) {
     strata::NodeData drawn;

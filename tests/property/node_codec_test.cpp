@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
+#include <string>
 
 #include "core/error.h"
+#include "tests/support/sign_payload.h"
 
 namespace strata {
 namespace {
@@ -56,7 +59,34 @@ NodeRecord recordOf(const EncodedNode& node, std::size_t count) {
   return record;
 }
 
-TEST(NodeCodec, GivesBackEveryPointBitForBit) {
+/// A few rising counts that end at `count`.
+std::vector<std::uint32_t> randomLevels(std::mt19937_64& random, std::size_t count) {
+  std::vector<std::uint32_t> levels;
+  for (std::size_t end = random() % 4; end < count; end += 1 + random() % (3 * end + 2))
+    levels.push_back(static_cast<std::uint32_t>(end));
+  levels.push_back(static_cast<std::uint32_t>(count));
+  return levels;
+}
+
+/// Every point with its attributes as one string of bytes, those of one level sorted.
+std::vector<std::string> pointsByLevel(const NodePoints& points, std::size_t stride,
+                                       const std::vector<std::uint32_t>& levels) {
+  std::vector<std::string> all;
+  for (std::size_t i = 0; i < points.count(); ++i) {
+    std::string point;
+    for (const auto& axis : points.grid) point.append(reinterpret_cast<const char*>(&axis[i]), sizeof axis[i]);
+    point.append(reinterpret_cast<const char*>(points.attributes.data()) + i * stride, stride);
+    all.push_back(std::move(point));
+  }
+  std::size_t first = 0;
+  for (const std::uint32_t end : levels) {
+    std::sort(all.begin() + static_cast<std::ptrdiff_t>(first), all.begin() + static_cast<std::ptrdiff_t>(end));
+    first = end;
+  }
+  return all;
+}
+
+TEST(NodeCodec, GivesBackEveryPointBitForBitInTheOrderGivenWhereThereAreNoLevels) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 120; ++round) {
     const StoreInfo info = storeInfo(random, 1 + static_cast<int>(random() % 52));
@@ -69,14 +99,78 @@ TEST(NodeCodec, GivesBackEveryPointBitForBit) {
   }
 }
 
+TEST(NodeCodec, GivesBackThePointsOfEveryLevelBitForBit) {
+  std::mt19937_64 random(6);
+  EncodeScratch scratch;
+  for (int round = 0; round < 200; ++round) {
+    StoreInfo info = storeInfo(random, 1 + static_cast<int>(random() % 52));
+    if (round % 3 == 0) info.grid.scale = glm::dvec3(0.01, 0.001, 1e-7);
+    const std::size_t count = round % 10 == 0 ? 1 + random() % 30000 : random() % 300;
+    NodePoints points = randomPoints(random, info, count);
+    if (round % 5 == 0)  // descending, with many copies
+      for (auto& axis : points.grid) {
+        for (std::int64_t& v : axis) v = v >> 3 << 3;
+        std::sort(axis.rbegin(), axis.rend());
+      }
+    points.levels = randomLevels(random, count);
+    const EncodedNode node = encodeNode(points, info, scratch);
+    ASSERT_EQ(node.payload, encodeNode(points, info).payload) << "round " << round;  // the scratch leaves no trace
+    const NodePoints decoded = decodeAll(recordOf(node, count), info, node.payload);
+    ASSERT_EQ(pointsByLevel(decoded, info.layout.stride(), points.levels),
+              pointsByLevel(points, info.layout.stride(), points.levels))
+        << "round " << round;
+  }
+}
+
+TEST(NodeCodec, KeepsColoursBesideOtherDrawnOnes) {
+  std::mt19937_64 random(7);
+  for (const int style : {0, 1, 2}) {  // 16 bits, 8 bits repeated, 8 bits on top
+    StoreInfo info;
+    info.layout = PointLayout({{std::string(attribute::kRgb), ScalarType::u16, 3, "", 1.0, 0.0}});
+    info.colourShift = 8;
+    info.cubeBits = 12;
+    NodePoints points = randomPoints(random, info, 3000);
+    std::vector<std::uint16_t> rgb;
+    for (int i = 0; i < 9000; ++i)
+      rgb.push_back(static_cast<std::uint16_t>(style == 0   ? random()
+                                               : style == 1 ? 257 * (random() & 255)
+                                                            : (random() & 255) << 8));
+    std::memcpy(points.attributes.data(), rgb.data(), points.attributes.size());
+    for (int i = 0; i < 3000; ++i) points.drawColours.push_back(static_cast<std::uint32_t>(random() & 0xffffff));
+    const EncodedNode node = encodeNode(points, info);
+    EXPECT_EQ(decodeAll(recordOf(node, 3000), info, node.payload).attributes, points.attributes) << style;
+    NodeData drawn;
+    decodeForDrawing(recordOf(node, 3000), info, node.payload, Precision::full30, drawn);
+    for (std::size_t i = 0; i < 3000; ++i) ASSERT_EQ(drawn.colour[i], points.drawColours[i] | 0xff000000u) << style;
+  }
+}
+
+TEST(NodeCodec, SpendsLessOnSortedPointsOfASurfaceThanOnTheirBits) {
+  std::mt19937_64 random(8);
+  StoreInfo info;
+  info.cubeBits = 20;
+  NodePoints points;
+  const std::size_t count = 40000;
+  for (std::size_t i = 0; i < count; ++i) {
+    points.grid[0].push_back(static_cast<std::int64_t>(random() % 100000));
+    points.grid[1].push_back(static_cast<std::int64_t>(random() % 100000));
+    points.grid[2].push_back(points.grid[0].back() / 3 + points.grid[1].back() / 4 + static_cast<int>(random() % 8));
+  }
+  const std::size_t unsorted = encodeNode(points, info).payload.size();
+  points.levels = {count};
+  EXPECT_LT(encodeNode(points, info).payload.size() + count * 2, unsorted);
+}
+
 TEST(NodeCodec, DrawnPositionsLieWithinHalfACellOfTheTrueOnes) {
   std::mt19937_64 random(2);
   for (int round = 0; round < 60; ++round) {
     const StoreInfo info = storeInfo(random, 4 + static_cast<int>(random() % 30));
     const std::size_t count = 1 + random() % 500;
-    const NodePoints points = randomPoints(random, info, count);
+    NodePoints points = randomPoints(random, info, count);
+    if (round % 2 == 0) points.levels = randomLevels(random, count);
     const EncodedNode node = encodeNode(points, info);
     const NodeRecord record = recordOf(node, count);
+    points = decodeAll(record, info, node.payload);
     for (int planes = 1; planes <= 3; ++planes) {
       const auto precision = static_cast<Precision>(planes);
       NodeData data;
@@ -100,7 +194,8 @@ TEST(NodeCodec, DrawnPositionsLieWithinHalfACellOfTheTrueOnes) {
 TEST(NodeCodec, RefusesEveryTruncatedPayload) {
   std::mt19937_64 random(3);
   const StoreInfo info = storeInfo(random, 20);
-  const NodePoints points = randomPoints(random, info, 40);
+  NodePoints points = randomPoints(random, info, 40);
+  points.levels = {1, 9, 40};
   const EncodedNode node = encodeNode(points, info);
   const NodeRecord record = recordOf(node, 40);
   for (std::size_t bytes = 0; bytes < node.payload.size(); ++bytes)
@@ -110,13 +205,38 @@ TEST(NodeCodec, RefusesEveryTruncatedPayload) {
 TEST(NodeCodec, RefusesEveryFlippedBit) {
   std::mt19937_64 random(4);
   const StoreInfo info = storeInfo(random, 20);
-  const NodePoints points = randomPoints(random, info, 25);
+  NodePoints points = randomPoints(random, info, 25);
+  points.levels = {3, 25};
   EncodedNode node = encodeNode(points, info);
   const NodeRecord record = recordOf(node, 25);
   for (std::size_t bit = 0; bit < node.payload.size() * 8; ++bit) {
     node.payload[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
     EXPECT_THROW(decodeAll(record, info, node.payload), Error) << "bit " << bit;
     node.payload[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
+  }
+}
+
+TEST(NodeCodec, FlippedBitsUnderRightChecksumsNeverCrash) {
+  std::mt19937_64 random(9);
+  for (int round = 0; round < 30; ++round) {
+    const StoreInfo info = storeInfo(random, 1 + static_cast<int>(random() % 40));
+    const std::size_t count = 1 + random() % 400;
+    NodePoints points = randomPoints(random, info, count);
+    points.levels = randomLevels(random, count);
+    const EncodedNode node = encodeNode(points, info);
+    for (int flip = 0; flip < 300; ++flip) {
+      EncodedNode bad = node;
+      for (std::uint64_t flips = 1 + random() % 3; flips > 0; --flips)
+        bad.payload[random() % bad.payload.size()] ^= static_cast<std::byte>(1u << (random() % 8));
+      test::signPayload(bad.payload, bad.headBytes);
+      bad.headChecksum = test::checksumOf(std::span(bad.payload).first(bad.headBytes));
+      NodeData drawn;
+      try {
+        decodeForDrawing(recordOf(bad, count), info, bad.payload, Precision::full30, drawn);
+        decodeAll(recordOf(bad, count), info, bad.payload);
+      } catch (const Error&) {
+      }
+    }
   }
 }
 
