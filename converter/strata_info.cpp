@@ -5,6 +5,7 @@
 #include "converter/command_line.h"
 #include "core/error.h"
 #include "core/program.h"
+#include "io/plane_sizes.h"
 #include "io/store.h"
 #include "io/verify.h"
 
@@ -29,6 +30,9 @@ Json describe(const Store& store) {
   Json sources = Json::array();
   for (const StoreSource& s : info.sources)
     sources.push_back({{"path", s.path}, {"format", s.format}, {"points", s.points}, {"skipped", s.skipped}});
+  Json planes = Json::array();
+  for (const PlaneSize& plane : planeSizes(store))
+    planes.push_back({{"name", plane.name}, {"bytes", plane.bytes}, {"raw_bytes", plane.rawBytes}});
   return {{"points", info.points},
           {"nodes", info.nodes},
           {"bounds", {{"min", toJson(info.bounds.min)}, {"max", toJson(info.bounds.max)}}},
@@ -39,6 +43,7 @@ Json describe(const Store& store) {
           {"scale", toJson(info.grid.scale)},
           {"exact", info.grid.exact},
           {"bytes", store.points().size()},
+          {"planes", planes},
           {"sources", sources}};
 }
 
@@ -58,6 +63,7 @@ void printText(const Store& store) {
     std::printf("  %-18s %s x %u, %g to %g\n", a.name.c_str(), std::string(scalarName(a.type)).c_str(), a.components,
                 info.ranges[i].min, info.ranges[i].max);
   }
+  std::printf("%s", planeSizesText(planeSizes(store), info.points).c_str());
   for (const StoreSource& s : info.sources)
     std::printf("  source      %s: %s, %s points%s\n", s.path.c_str(), s.format.c_str(), grouped(s.points).c_str(),
                 s.skipped > 0 ? (", " + grouped(s.skipped) + " skipped").c_str() : "");

@@ -1,5 +1,3 @@
-#include <xxhash.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -7,9 +5,10 @@
 #include "core/error.h"
 #include "io/attribute_codec.h"
 #include "io/bit_packing.h"
+#include "io/checksum.h"
 #include "io/colour_codec.h"
 #include "io/node_codec.h"
-#include "io/node_payload.h"
+#include "io/payload_head.h"
 #include "io/position_codec.h"
 
 namespace strata {
@@ -18,37 +17,25 @@ namespace {
 /// The parts of one payload, every length checked against the record and against each other.
 class PayloadReader {
  public:
-  PayloadReader(const NodeRecord& record, std::span<const std::byte> payload) : record_(record), payload_(payload) {
-    if (payload.size() < record.headBytes || record.headBytes < sizeof(PayloadHead)) fail("truncated payload head");
-    if (XXH3_64bits(payload.data(), record.headBytes) != record.headChecksum) fail("payload head checksum mismatch");
-    std::memcpy(&head_, payload.data(), sizeof head_);
-    const std::size_t expected =
-        sizeof head_ + head_.levelCount * sizeof(std::uint32_t) + head_.planeCount * sizeof(PayloadPlane);
-    if (expected != record.headBytes) fail("payload head has the wrong size");
-    levelEnds_.resize(head_.levelCount);
-    planes_.resize(head_.planeCount);
-    const std::byte* from = payload.data() + sizeof head_;
-    if (!levelEnds_.empty()) std::memcpy(levelEnds_.data(), from, levelEnds_.size() * sizeof(std::uint32_t));
-    from += levelEnds_.size() * sizeof(std::uint32_t);
-    if (!planes_.empty()) std::memcpy(planes_.data(), from, planes_.size() * sizeof(PayloadPlane));
-    checkHead();
-  }
+  PayloadReader(const NodeRecord& record, std::span<const std::byte> payload)
+      : record_(record), payload_(payload), parsed_(parseHead(record, payload)) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw Error("points.bin", "node " + NodeKey{record_.key}.text() + ": " + what);
   }
-  const PayloadHead& head() const { return head_; }
-  std::span<const std::uint32_t> levelEnds() const { return levelEnds_; }
+  const PayloadHead& head() const { return parsed_.head; }
+  std::span<const std::uint32_t> levelEnds() const { return parsed_.levelEnds; }
   std::size_t pointCount() const { return record_.pointCount; }
   bool has(std::uint16_t id) const {
-    return std::any_of(planes_.begin(), planes_.end(), [id](const PayloadPlane& p) { return p.id == id; });
+    return std::any_of(parsed_.planes.begin(), parsed_.planes.end(),
+                       [id](const PayloadPlane& p) { return p.id == id; });
   }
   std::vector<std::uint8_t>& spare() { return spare_; }
 
   /// False as well where the bytes at hand end before the plane does.
   bool holds(std::uint16_t id) const {
     std::size_t end = record_.headBytes;
-    for (const PayloadPlane& p : planes_) {
+    for (const PayloadPlane& p : parsed_.planes) {
       end += p.storedBytes;
       if (p.id == id) return end <= payload_.size();
     }
@@ -62,14 +49,14 @@ class PayloadReader {
   };
   Plane plane(std::uint16_t id) {
     std::size_t offset = record_.headBytes;
-    for (const PayloadPlane& p : planes_) {
+    for (const PayloadPlane& p : parsed_.planes) {
       if (p.id != id) {
         offset += p.storedBytes;
         continue;
       }
       if (offset > payload_.size() || p.storedBytes > payload_.size() - offset) fail("truncated plane");
       const std::span<const std::byte> stored = payload_.subspan(offset, p.storedBytes);
-      if (XXH3_64bits(stored.data(), stored.size()) != p.checksum) fail("block checksum mismatch");
+      if (checksum(stored) != p.checksum) fail("block checksum mismatch");
       stored_.resize(stored.size() + kBitSlack);
       std::copy(stored.begin(), stored.end(), stored_.begin());
       return {static_cast<PlaneEncoding>(p.encoding), std::span(stored_).first(stored.size())};
@@ -81,34 +68,17 @@ class PayloadReader {
   template <class T>
   void toDrawingOrder(const std::vector<T>& stored, T* drawn) const {
     std::size_t first = 0;
-    for (const std::uint32_t end : levelEnds_) {
+    for (const std::uint32_t end : parsed_.levelEnds) {
       interleaveLevel(stored.data() + first, end - first, drawn + first);
       first = end;
     }
-    if (levelEnds_.empty()) std::copy(stored.begin(), stored.end(), drawn);
+    if (parsed_.levelEnds.empty()) std::copy(stored.begin(), stored.end(), drawn);
   }
 
  private:
-  void checkHead() const {
-    if (head_.pointCount != record_.pointCount)
-      fail("point count does not match, found " + std::to_string(head_.pointCount) + " (expected " +
-           std::to_string(record_.pointCount) + ")");
-    if (head_.pointCount > kMaxNodePoints) fail("too many points");
-    for (int axis = 0; axis < 3; ++axis)
-      if (head_.bits[axis] > kMaxCoordinateBits || head_.start[axis] > kOctreeLevels) fail("bounds with too many bits");
-    std::uint32_t before = 0;
-    for (const std::uint32_t end : levelEnds_) {
-      if (end <= before || end > head_.pointCount) fail("levels do not ascend");
-      before = end;
-    }
-    if (!levelEnds_.empty() && before != head_.pointCount) fail("levels do not end at the point count");
-  }
-
   const NodeRecord& record_;
   std::span<const std::byte> payload_;
-  PayloadHead head_;
-  std::vector<std::uint32_t> levelEnds_;
-  std::vector<PayloadPlane> planes_;
+  ParsedHead parsed_;
   std::vector<std::byte> stored_;
   std::vector<std::uint8_t> spare_;
 };

@@ -1,5 +1,3 @@
-#include <xxhash.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "core/error.h"
 #include "io/attribute_codec.h"
 #include "io/bit_packing.h"
+#include "io/checksum.h"
 #include "io/colour_codec.h"
 #include "io/node_codec.h"
 #include "io/node_payload.h"
@@ -106,7 +105,7 @@ class NodeWriter {
     plane.id = id;
     plane.encoding = encoding;
     plane.storedBytes = static_cast<std::uint32_t>(body.size() - start);
-    plane.checksum = XXH3_64bits(body.data() + start, plane.storedBytes);
+    plane.checksum = checksum(std::span(body).subspan(start));
     buffers_.planes.push_back(plane);
   }
 
@@ -294,7 +293,7 @@ class NodeWriter {
     std::memcpy(to, &head_, sizeof head_);
     if (levelBytes > 0) std::memcpy(to + sizeof head_, buffers_.levelEnds.data(), levelBytes);
     std::memcpy(to + sizeof head_ + levelBytes, buffers_.planes.data(), planeBytes);
-    node.headChecksum = XXH3_64bits(to, node.headBytes);
+    node.headChecksum = checksum(node.payload);
     node.payload.insert(node.payload.end(), buffers_.body.begin(), buffers_.body.end());
     for (int p = 0; p < 3; ++p) node.drawBytes[p] = static_cast<std::uint32_t>(node.headBytes + drawEnd[p]);
     return node;

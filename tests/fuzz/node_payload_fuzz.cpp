@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   record.key = 1;
   record.pointCount = points;
   record.headBytes = headBytes;
-  record.headChecksum = strata::test::checksumOf(std::span(payload).first(headBytes));
+  record.headChecksum = strata::checksum(std::span(payload).first(headBytes));
   record.payloadBytes = static_cast<std::uint32_t>(payload.size());
   for (const auto precision : {strata::Precision::low10, strata::Precision::full30}) {
     strata::NodeData drawn;

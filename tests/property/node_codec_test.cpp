@@ -229,7 +229,7 @@ TEST(NodeCodec, FlippedBitsUnderRightChecksumsNeverCrash) {
       for (std::uint64_t flips = 1 + random() % 3; flips > 0; --flips)
         bad.payload[random() % bad.payload.size()] ^= static_cast<std::byte>(1u << (random() % 8));
       test::signPayload(bad.payload, bad.headBytes);
-      bad.headChecksum = test::checksumOf(std::span(bad.payload).first(bad.headBytes));
+      bad.headChecksum = checksum(std::span(bad.payload).first(bad.headBytes));
       NodeData drawn;
       try {
         decodeForDrawing(recordOf(bad, count), info, bad.payload, Precision::full30, drawn);

@@ -1,17 +1,14 @@
 #pragma once
-#include <xxhash.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <span>
 #include <vector>
 
+#include "io/checksum.h"
 #include "io/node_payload.h"
 
 namespace strata::test {
-
-inline std::uint64_t checksumOf(std::span<const std::byte> bytes) { return XXH3_64bits(bytes.data(), bytes.size()); }
 
 /// Makes the planes' checksums right, so that what is wrong with them reaches the decoders.
 inline void signPayload(std::vector<std::byte>& payload, std::size_t headBytes) {
@@ -24,7 +21,7 @@ inline void signPayload(std::vector<std::byte>& payload, std::size_t headBytes) 
     PayloadPlane plane;
     std::memcpy(&plane, payload.data() + at, sizeof plane);
     if (body + plane.storedBytes > payload.size()) return;
-    plane.checksum = checksumOf(std::span(payload).subspan(body, plane.storedBytes));
+    plane.checksum = checksum(std::span(payload).subspan(body, plane.storedBytes));
     std::memcpy(payload.data() + at, &plane, sizeof plane);
     body += plane.storedBytes;
     at += sizeof plane;
