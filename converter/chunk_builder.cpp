@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "converter/lod_colour.h"
+
 namespace strata {
 namespace {
 
@@ -53,6 +55,7 @@ class ChunkBuilder {
       : frame_(frame),
         cell_(cell),
         cellFrame_(frame, cell),
+        colour_(frame.info),
         records_(sortRecords(frame, cellFrame_, std::move(points))),
         columns_{Columns(records_.size() / frame.format.stride()), Columns(records_.size() / frame.format.stride())},
         taken_(records_.size() / frame.format.stride()) {
@@ -66,11 +69,8 @@ class ChunkBuilder {
 
   BuiltChunk build() {
     BuiltChunk out;
-    const std::size_t stride = frame_.format.stride();
-    Own own = takeOwn(cell_, 0, 0, taken_.size());
-    out.topPoints.resize(own.records.size() * stride);
-    for (std::size_t i = 0; i < own.records.size(); ++i)
-      std::memcpy(out.topPoints.data() + i * stride, records_.data() + own.records[i] * stride, stride);
+    const Own own = takeOwn(cell_, 0, 0, taken_.size());
+    out.topPoints = topPoints(own);
     out.topChildren = buildChildren(cell_, 0, own, out.nodes);
     return out;
   }
@@ -80,8 +80,26 @@ class ChunkBuilder {
   struct Own {
     LevelOrder levels;
     std::vector<std::uint32_t> records;
+    std::vector<Represented> represented;  ///< where colours are averaged and there are children
     std::array<std::size_t, 9> octants{};  ///< all alike: no children
   };
+
+  std::vector<std::byte> topPoints(const Own& own) const {
+    const std::size_t stride = frame_.format.stride(), topStride = topPointStride(frame_);
+    std::vector<std::byte> packed(own.records.size() * topStride);
+    for (std::size_t i = 0; i < own.records.size(); ++i) {
+      std::byte* to = packed.data() + i * topStride;
+      std::memcpy(to, records_.data() + own.records[i] * stride, stride);
+      if (!frame_.averages()) continue;
+      const Represented one = own.represented.empty() ? representedAt(own.records[i]) : own.represented[i];
+      std::memcpy(to + stride, &one, sizeof one);
+    }
+    return packed;
+  }
+
+  Represented representedAt(std::uint32_t record) const {
+    return {colour_.of(records_.data() + record * frame_.format.stride() + frame_.format.positionBytes())};
+  }
 
   LocalPoints localPoints(int side, std::size_t begin, std::size_t end) const {
     LocalPoints points;
@@ -106,10 +124,14 @@ class ChunkBuilder {
   Own takeOwn(NodeKey key, int side, std::size_t begin, std::size_t end) {
     Own own;
     const bool split = canSplit(key, begin, end, side);
-    own.levels = levelOrder(localPoints(side, begin, end), split ? frame_.info.nodePoints : LevelOrder::kAll, scratch_);
+    own.levels = sampleNode(frame_.sampling, localPoints(side, begin, end),
+                            split ? frame_.info.nodePoints : LevelOrder::kAll, scratch_);
     own.records.resize(own.levels.order.size());
     for (std::size_t i = 0; i < own.records.size(); ++i)
       own.records[i] = columns_[side].record[begin + own.levels.order[i]];
+    if (split && frame_.averages())
+      own.represented = averaged(representedBy(scratch_, end - begin, own.levels.order), own.records.size(),
+                                 [&](std::size_t i) { return representedAt(columns_[side].record[begin + i]); });
     own.octants.fill(begin);
     if (split) moveRest(side, begin, end, childBit(key), own);
     return own;
@@ -149,8 +171,9 @@ class ChunkBuilder {
     nodes.emplace_back();
     const Own own = takeOwn(key, side, begin, end);
     const std::vector<SubtreeShape> children = buildChildren(key, side, own, nodes);
-    FinishedNode finished = finishNode(frame_, key, gather(frame_, records_, own.records), own.levels,
-                                       cellFrame_.world(own.levels.moments), children);
+    NodePoints points = gather(frame_, records_, frame_.format.stride(), own.records);
+    for (const Represented& one : own.represented) points.drawColours.push_back(one.colour);
+    FinishedNode finished = finishNode(frame_, key, points, own.levels, cellFrame_.world(own.levels.moments), children);
     nodes[place] = std::move(finished.node);
     return finished.shape;
   }
@@ -158,6 +181,7 @@ class ChunkBuilder {
   const BuildFrame& frame_;
   const NodeKey cell_;
   const CellFrame cellFrame_;
+  const DrawColour colour_;
   const std::vector<std::byte> records_;
   Columns columns_[2];               ///< used in turn by level
   std::vector<std::uint8_t> taken_;  ///< in the range that is being divided: stays in the node
@@ -165,6 +189,10 @@ class ChunkBuilder {
 };
 
 }  // namespace
+
+std::size_t topPointStride(const BuildFrame& frame) {
+  return frame.format.stride() + (frame.averages() ? sizeof(Represented) : 0);
+}
 
 BuiltChunk buildChunk(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points) {
   return ChunkBuilder(frame, cell, std::move(points)).build();

@@ -10,9 +10,12 @@ namespace strata {
 /// The subtree of one bucket's cell, but for its top node: ancestors still take points out of that one.
 struct BuiltChunk {
   std::vector<BuiltNode> nodes;           ///< below the top node, in depth-first order
-  std::vector<std::byte> topPoints;       ///< packed
+  std::vector<std::byte> topPoints;       ///< packed, topPointStride() bytes each
   std::vector<SubtreeShape> topChildren;  ///< shapes of the top node's subtrees
 };
+
+/// A top node's point is its record and, where colours are averaged, its Represented.
+std::size_t topPointStride(const BuildFrame& frame);
 
 /// Builds the nodes of `cell` from all of its points (packed, in the order of the input), in memory, top down
 /// (design section 5, stage 3): a node keeps representatives, the rest goes to its children.

@@ -129,7 +129,7 @@ StoreInfo storeInfo(const Sources& sources, const ConvertOptions& options, const
   info.layout = frame.layout;
   info.ranges = all.ranges;
   info.nodePoints = options.nodePoints;
-  info.sampling = "ntree";
+  info.sampling = samplingName(options.sampling);
   info.las = frame.las;
   if (const int rgb = frame.layout.find(attribute::kRgb); rgb >= 0)
     info.colourShift = all.ranges[static_cast<std::size_t>(rgb)].max > 255.0 ? 8 : 0;
@@ -220,7 +220,8 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   checkCounts(sources, options, all);
 
   clock.begin(stage::kBuild);
-  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed)};
+  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed), options.sampling,
+                         options.lodColour};
   NodeSink sink(folder.path());
   std::vector<ChunkTop> tops = buildChunks(frame, all.buckets, options, spill, sink, control);
   clock.begin(stage::kMerge);

@@ -34,13 +34,12 @@ Cut cutAt(std::size_t capacity, RankCounts& counts) {
   return cut;
 }
 
-/// Prefix counts of the levels, and the ends of the passes.
-void describe(const RankCounts& counts, LevelOrder& out) {
+/// Prefix counts of the levels.
+void countLevels(const RankCounts& counts, LevelOrder& out) {
   std::uint32_t sum = 0;
   const auto total = static_cast<std::uint32_t>(out.order.size());
   for (std::size_t rank = 0; rank < counts.size() && sum < total; ++rank) {
     sum += counts[rank];
-    if (counts[rank] > 0) out.passes.push_back(sum);
     const bool levelEnds = rank % NTree::kPasses == NTree::kPasses - 1;
     if (levelEnds && out.prefix.size() + 1 < NodeRecord::kMaxPrefixes) out.prefix.push_back(sum);
   }
@@ -67,11 +66,12 @@ double spacingOf(const NTree& tree, const RankCounts& counts, std::size_t kept) 
 LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScratch& scratch) {
   LevelOrder out;
   if (points.count() == 0) {
-    out.prefix = out.passes = {0};
+    out.prefix = {0};
     return out;
   }
   const NTree tree = buildTree(points, capacity, scratch);
   out.moments = tree.moments;
+  out.rootSide = tree.rootSide;
   RankCounts counts{};
   for (const std::uint16_t rank : tree.ranks) ++counts[rank];
   const Cut cut = cutAt(capacity, counts);
@@ -94,7 +94,7 @@ LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScrat
     }
     out.order[next[rank]++] = tree.point(i);
   }
-  describe(counts, out);
+  countLevels(counts, out);
   out.spacing = spacingOf(tree, counts, kept);
   return out;
 }

@@ -9,16 +9,16 @@
 namespace strata {
 
 /// The points that a node keeps, in the order in which they are drawn: any prefix is an even subsample of the node.
-/// Level l of the n-tree adds a point to each occupied cell that has none yet. Inside a level the points come in
-/// passes, each an even lattice of its own; inside a pass they stand in the n-tree's space-filling order.
+/// Level l of the n-tree adds a point to each occupied cell that has none yet. Inside a level the points come in the
+/// tree's passes, each an even lattice of its own, and inside a pass in the order of its keys.
 struct LevelOrder {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
   std::vector<std::uint32_t> order;   ///< indices into the points
   std::vector<std::uint32_t> prefix;  ///< kept points up to and including level i; at most NodeRecord::kMaxPrefixes,
                                       ///< the last one counts all
-  std::vector<std::uint32_t> passes;  ///< ends of the passes in `order`, rising; the last one counts all
   double spacing = 0.0;               ///< metres between neighbours when all kept points are drawn
+  double rootSide = 0.0;              ///< of the n-tree, metres
   Moments moments;                    ///< of all points, kept or not; about the corner of their cube, in metres
 };
 

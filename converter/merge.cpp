@@ -4,20 +4,23 @@
 #include <cstring>
 #include <span>
 
+#include "converter/chunk_builder.h"
+#include "converter/lod_colour.h"
+
 namespace strata {
 namespace {
 
 /// A node whose points its parent may still take.
 struct OpenNode {
   NodeKey key;
-  std::vector<std::byte> points;
+  std::vector<std::byte> points;  ///< topPointStride() bytes each
   std::vector<SubtreeShape> children;
 };
 
 class Merger {
  public:
   Merger(const BuildFrame& frame, Spill& spill, NodeSink& sink, const ConvertControl& control)
-      : frame_(frame), spill_(spill), sink_(sink), control_(control) {}
+      : frame_(frame), stride_(topPointStride(frame)), spill_(spill), sink_(sink), control_(control) {}
 
   OpenNode merge(NodeKey cell, std::vector<ChunkTop>::iterator first, std::vector<ChunkTop>::iterator last) {
     control_.checkStop();
@@ -40,11 +43,15 @@ class Merger {
   SubtreeShape close(const OpenNode& node) {
     const CellFrame cell(frame_, node.key);
     std::vector<std::int32_t> columns[3];
-    const LevelOrder levels = levelOrder(localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_);
+    const LevelOrder levels =
+        sampleNode(frame_.sampling, localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_);
     Moments moments = cell.world(levels.moments);
     for (const SubtreeShape& child : node.children) moments.add(child.moments);
-    FinishedNode finished =
-        finishNode(frame_, node.key, gather(frame_, node.points, levels.order), levels, moments, node.children);
+    NodePoints points = gather(frame_, node.points, stride_, levels.order);
+    if (frame_.averages() && !node.children.empty())
+      for (const std::uint32_t i : levels.order)
+        points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);
+    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children);
     std::vector<BuiltNode> one;
     one.push_back(std::move(finished.node));
     sink_.write(std::move(one));
@@ -55,9 +62,8 @@ class Merger {
   /// The own points of all `nodes`, one after the other, in `columns`.
   LocalPoints localPoints(const CellFrame& cell, std::span<const OpenNode> nodes,
                           std::vector<std::int32_t> (&columns)[3]) const {
-    const std::size_t stride = frame_.format.stride();
     for (const OpenNode& node : nodes)
-      for (std::size_t at = 0; at < node.points.size(); at += stride) {
+      for (std::size_t at = 0; at < node.points.size(); at += stride_) {
         std::int64_t grid[3];
         frame_.format.getPosition(node.points.data() + at, grid);
         for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
@@ -66,29 +72,39 @@ class Merger {
   }
 
   OpenNode takeFromChildren(NodeKey key, std::vector<OpenNode> children) {
-    const std::size_t stride = frame_.format.stride();
     const CellFrame cell(frame_, key);
     std::vector<std::int32_t> columns[3];
     const LocalPoints points = localPoints(cell, children, columns);
     // Half at most, so that a chain of only children does not empty the lower ones.
     const std::size_t capacity =
         std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(points.count() / 2, 1));
-    std::vector<std::uint32_t> kept = levelOrder(points, capacity, scratch_).order;
-    std::sort(kept.begin(), kept.end());
-    OpenNode parent{key, {}, {}};
-    parent.points.reserve(kept.size() * stride);
-    std::size_t next = 0, global = 0;
+    const LevelOrder levels = sampleNode(frame_.sampling, points, capacity, scratch_);
+    std::vector<Represented> represented;
+    if (frame_.averages()) {
+      std::vector<Represented> all;
+      for (const OpenNode& child : children)
+        for (std::size_t at = 0; at < child.points.size(); at += stride_)
+          all.push_back(representedAt(child.points.data() + at));
+      represented = averaged(representedBy(scratch_, all.size(), levels.order), levels.order.size(),
+                             [&](std::size_t i) { return all[i]; });
+    }
+    OpenNode parent{key, std::vector<std::byte>(levels.order.size() * stride_), {}};
+    std::vector<std::uint32_t> place(points.count(), kLeft);
+    for (std::size_t i = 0; i < levels.order.size(); ++i) place[levels.order[i]] = static_cast<std::uint32_t>(i);
+    std::size_t global = 0;
     for (OpenNode& child : children) {
       std::size_t to = 0;
-      for (std::size_t at = 0; at < child.points.size(); at += stride, ++global) {
+      for (std::size_t at = 0; at < child.points.size(); at += stride_, ++global) {
         const std::byte* record = child.points.data() + at;
-        if (next < kept.size() && kept[next] == global) {
-          parent.points.insert(parent.points.end(), record, record + stride);
-          ++next;
-        } else {
-          std::memmove(child.points.data() + to, record, stride);
-          to += stride;
+        if (place[global] == kLeft) {
+          std::memmove(child.points.data() + to, record, stride_);
+          to += stride_;
+          continue;
         }
+        std::byte* kept = parent.points.data() + place[global] * stride_;
+        std::memcpy(kept, record, stride_);
+        if (frame_.averages())
+          std::memcpy(kept + frame_.format.stride(), &represented[place[global]], sizeof(Represented));
       }
       child.points.resize(to);
       if (!child.points.empty() || !child.children.empty()) parent.children.push_back(close(child));
@@ -96,7 +112,16 @@ class Merger {
     return parent;
   }
 
+  Represented representedAt(const std::byte* record) const {
+    Represented one;
+    std::memcpy(&one, record + frame_.format.stride(), sizeof one);
+    return one;
+  }
+
+  static constexpr std::uint32_t kLeft = 0xffffffff;  ///< in no parent
+
   const BuildFrame& frame_;
+  const std::size_t stride_;
   Spill& spill_;
   NodeSink& sink_;
   const ConvertControl& control_;

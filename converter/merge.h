@@ -10,7 +10,7 @@ namespace strata {
 /// The top node of a finished chunk, waiting for its ancestors.
 struct ChunkTop {
   NodeKey key;
-  Spill::Handle points;  ///< packed
+  Spill::Handle points;  ///< as BuiltChunk has them
   std::vector<SubtreeShape> children;
 };
 

@@ -44,8 +44,8 @@ CellFrame::CellFrame(const BuildFrame& frame, NodeKey cell) {
   step = frame.info.grid.scale * static_cast<double>(std::int64_t{1} << shift);
 }
 
-NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::span<const std::uint32_t> which) {
-  const std::size_t stride = frame.format.stride();
+NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::size_t stride,
+                  std::span<const std::uint32_t> which) {
   const std::size_t attributeBytes = frame.format.attributeBytes;
   NodePoints out;
   for (auto& axis : out.grid) axis.resize(which.size());

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "converter/contour.h"
-#include "converter/level_order.h"
 #include "converter/packed_points.h"
+#include "converter/sampling.h"
 #include "io/node_codec.h"
 #include "io/store.h"
 
@@ -16,7 +16,11 @@ namespace strata {
 struct BuildFrame {
   StoreInfo info;  ///< layout, grid, cubeBits, colourShift and nodePoints are set
   PackedFormat format;
+  Sampling sampling = Sampling::ntree;
+  LodColour lodColour = LodColour::first;
 
+  /// Nodes with children have colours of their own to be drawn in.
+  bool averages() const { return lodColour == LodColour::average && info.layout.find(attribute::kRgb) >= 0; }
   glm::dvec3 position(const std::int64_t (&grid)[3]) const {
     return info.grid.offset + info.grid.scale * glm::dvec3(grid[0], grid[1], grid[2]);
   }
@@ -52,8 +56,9 @@ struct FinishedNode {
   SubtreeShape shape;
 };
 
-/// Copies packed records, `which` of them in this order.
-NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::span<const std::uint32_t> which);
+/// Copies packed records, `which` of them in this order. They stand `stride` bytes apart.
+NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::size_t stride,
+                  std::span<const std::uint32_t> which);
 
 /// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); `moments` are of
 /// them and everything below, world; `children` are the shapes of the node's subtrees.

@@ -8,12 +8,13 @@
 
 namespace strata {
 
-/// Memory for ordering one node, to be used for the next one too: kTreeBytesPerPoint for each point.
+/// Memory for ordering one node, to be used for the next one too. With what averaging colours takes for a moment it is
+/// kTreeBytesPerPoint for each point.
 struct TreeScratch {
   std::vector<std::uint64_t> entries, spare;
   std::vector<std::uint16_t> ranks;
 };
-inline constexpr std::size_t kTreeBytesPerPoint = 18;
+inline constexpr std::size_t kTreeBytesPerPoint = 22;
 
 /// The adaptive n-tree of a node (Kanzok 2015, 3.1): n = 2, 4 or 8 as its points lie along a line, a plane or in a
 /// volume (his eq. 1); cells are squares or cubes of the principal frame. Not a structure with pointers: its points

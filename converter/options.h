@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "converter/sampling.h"
 #include "core/log.h"
 #include "io/point_source.h"
 
@@ -18,6 +19,8 @@ struct ConvertOptions {
   std::uint64_t memoryBytes = std::uint64_t{2} << 30;
   int threads = 0;  ///< 0 = all cores
   std::uint32_t nodePoints = 65536;
+  Sampling sampling = Sampling::ntree;
+  LodColour lodColour = LodColour::first;
   bool force = false;  ///< replace an existing store
   SourceOptions source;
 };

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <map>
 
 #include "converter/command_line.h"
 #include "converter/conversion_summary.h"
@@ -52,6 +53,16 @@ int run(int argc, char** argv) {
   app.add_option("--node-points", options.nodePoints, "points a node holds")
       ->check(CLI::Range(kLeastNodePoints, kMostNodePoints))
       ->capture_default_str();
+  app.add_option("--sampling", options.sampling, "how a node's points are picked: ntree, poisson or random")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Sampling>{
+          {"ntree", Sampling::ntree}, {"poisson", Sampling::poisson}, {"random", Sampling::random}}))
+      ->default_str("ntree");
+  app.add_option(
+         "--lod-colour", options.lodColour,
+         "what the points of coarse levels are drawn in: first, their own colour, or average, of what they stand for")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, LodColour>{{"first", LodColour::first}, {"average", LodColour::average}}))
+      ->default_str("first");
   app.add_option("--temp", options.tempFolder, "folder for temporary points (default: beside the store)");
   app.add_option("--columns", options.source.columns,
                  "columns of text files, as in x,y,z,intensity,r,g,b; - skips one");

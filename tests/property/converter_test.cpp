@@ -151,6 +151,79 @@ INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape,
                          testing::Values("plane", "room", "city", "terrain", "stack", "sphere", "degenerate"),
                          [](const auto& shape) { return std::string(shape.param); });
 
+struct Way {
+  Sampling sampling;
+  LodColour lodColour;
+};
+
+class EveryWay : public testing::TestWithParam<Way> {};
+
+/// 900,000 points in 512 MiB make several chunks; the tree above them is merged.
+TEST_P(EveryWay, KeepsEverySourcePointExactlyOnceAndGivesTheSameBytesForAnyNumberOfThreads) {
+  const test::TempFolder folder;
+  ConvertOptions options;
+  options.inputs = {"synthetic:city?points=900000&seed=3"};
+  options.sampling = GetParam().sampling;
+  options.lodColour = GetParam().lodColour;
+  options.memoryBytes = kLeastMemoryBytes;
+  for (const int threads : {1, 2}) {
+    options.threads = threads;
+    options.output = (folder / ("t" + std::to_string(threads))).string();
+    convert(options, ConvertControl{});
+  }
+  EXPECT_EQ(bytesOf(folder / "t1" / kPointsFile), bytesOf(folder / "t2" / kPointsFile));
+  const Store store(options.output);
+  const VerifyReport report = verifyStore(store);
+  EXPECT_TRUE(report.problems.empty()) << report.problems.front();
+  EXPECT_EQ(store.info().sampling, samplingName(options.sampling));
+  EXPECT_EQ(sortedPoints(store), sortedSourcePoints(options.inputs.front(), store.info()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
+                         testing::Values(Way{Sampling::ntree, LodColour::average},
+                                         Way{Sampling::poisson, LodColour::first},
+                                         Way{Sampling::random, LodColour::average}));
+
+TEST(Converter, AveragedColoursAreThoseOfTheSurroundingsAndOnlyOfNodesWithChildren) {
+  // Black and white points of a plane in turn: what stands for many is grey, and exact colours are still there.
+  const test::TempFolder folder;
+  {
+    std::ofstream text(folder / "grey.xyz");
+    for (int i = 0; i < 60000; ++i) {
+      const int c = i % 2 == 0 ? 0 : 255;
+      text << std::fmod(i * 0.7548776662466927, 1.0) * 10.0 << ' ' << std::fmod(i * 0.5698402909980532, 1.0) * 10.0
+           << " 0 " << c << ' ' << c << ' ' << c << '\n';
+    }
+  }
+  ConvertOptions options;
+  options.inputs = {(folder / "grey.xyz").string()};
+  options.source.columns = "x,y,z,r,g,b";
+  options.output = (folder / "a.strata").string();
+  options.nodePoints = 1024;
+  options.lodColour = LodColour::average;
+  convert(options, ConvertControl{});
+  const Store store(options.output);
+  for (std::uint32_t n = 0; n < store.hierarchy().nodes.size(); ++n) {
+    NodeData drawn;
+    readForDrawing(store, n, Precision::full30, drawn);
+    double sum = 0.0;
+    int extremes = 0;
+    for (const std::uint32_t colour : drawn.colour) {
+      sum += colour & 255u;
+      extremes += (colour & 255u) == 0 || (colour & 255u) == 255;
+    }
+    const double mean = sum / static_cast<double>(drawn.colour.size());
+    if (store.hierarchy().nodes[n].childMask == 0) {
+      EXPECT_EQ(extremes, static_cast<int>(drawn.colour.size())) << NodeKey{drawn.key}.text();
+    } else if (drawn.key.isRoot()) {
+      EXPECT_NEAR(mean, 127.5, 10.0);
+      EXPECT_LT(extremes, 50);
+    }
+  }
+  EXPECT_EQ(sortedPoints(store).size(), 60000u);
+  EXPECT_TRUE(verifyStore(store).problems.empty());
+}
+
 TEST(Converter, ManyChunksGiveTheSamePointsAsOne) {
   // 6 million points in 512 MiB make several chunks; the tree above them is merged.
   const test::TempFolder folder;

@@ -1,4 +1,4 @@
-#include "converter/level_order.h"
+#include "converter/sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -54,11 +54,9 @@ void expectSound(const LevelOrder& levels, std::size_t points, std::size_t kept)
   ASSERT_EQ(levels.order.size(), kept);
   EXPECT_EQ(std::set<std::uint32_t>(levels.order.begin(), levels.order.end()).size(), kept);
   for (const std::uint32_t i : levels.order) ASSERT_LT(i, points);
-  for (const auto* ends : {&levels.prefix, &levels.passes}) {
-    ASSERT_FALSE(ends->empty());
-    EXPECT_TRUE(std::is_sorted(ends->begin(), ends->end()));
-    EXPECT_EQ(ends->back(), kept);
-  }
+  ASSERT_FALSE(levels.prefix.empty());
+  EXPECT_TRUE(std::is_sorted(levels.prefix.begin(), levels.prefix.end()));
+  EXPECT_EQ(levels.prefix.back(), kept);
   EXPECT_LE(levels.prefix.size(), static_cast<std::size_t>(NodeRecord::kMaxPrefixes));
 }
 
@@ -71,6 +69,56 @@ TEST(LevelOrder, KeepsExactlyTheCapacityEachPointOnceWithRisingPrefixes) {
     const std::size_t capacity = 1 + random() % 6000;
     expectSound(levelOrder(cloud.local(), capacity, scratch), cloud.count(), std::min(capacity, cloud.count()));
     expectSound(levelOrder(cloud.local(), LevelOrder::kAll, scratch), cloud.count(), cloud.count());
+  }
+}
+
+TEST(Sampling, EveryWayKeepsExactlyTheCapacityEachPointOnceWithRisingPrefixes) {
+  std::mt19937_64 random(8);
+  TreeScratch scratch;
+  for (int round = 0; round < 30; ++round) {
+    const glm::dvec3 half = round % 3 == 0 ? kLine : round % 3 == 1 ? kPlane : kVolume;
+    const Cloud cloud = turnedBox(random, half, random() % 3000, anyTurn(random));
+    const std::size_t capacity = 1 + random() % 4000;
+    for (const Sampling sampling : {Sampling::poisson, Sampling::random}) {
+      const LevelOrder levels = sampleNode(sampling, cloud.local(), capacity, scratch);
+      expectSound(levels, cloud.count(), std::min(capacity, cloud.count()));
+    }
+  }
+  Cloud copies;
+  for (auto& axis : copies.axis) axis.assign(5000, 77);
+  expectSound(sampleNode(Sampling::poisson, copies.local(), 1000, scratch), 5000, 1000);
+}
+
+TEST(Sampling, NoTwoPointsOfAPoissonPrefixAreCloserThanItsDistance) {
+  std::mt19937_64 random(6);
+  const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 60000, anyTurn(random));
+  TreeScratch scratch;
+  const LevelOrder levels = sampleNode(Sampling::poisson, cloud.local(), 4000, scratch);
+  for (std::size_t l = 1; l + 1 < levels.prefix.size(); ++l) {
+    const double distance = levels.rootSide > 0.0 ? levels.rootSide * std::ldexp(1.0, -static_cast<int>(l)) : 0.0;
+    for (std::uint32_t i = 0; i < levels.prefix[l]; ++i)
+      for (std::uint32_t j = 0; j < i; ++j)
+        ASSERT_GE(glm::length(cloud.position(levels.order[i]) - cloud.position(levels.order[j])), distance);
+  }
+}
+
+TEST(Sampling, EveryPointIsRepresentedByAKeptOneAndKeptOnesByThemselves) {
+  std::mt19937_64 random(4);
+  const Cloud cloud = turnedBox(random, kPlane, 20000, anyTurn(random));
+  TreeScratch scratch;
+  for (const Sampling sampling : {Sampling::ntree, Sampling::poisson, Sampling::random}) {
+    const LevelOrder levels = sampleNode(sampling, cloud.local(), 2000, scratch);
+    const std::vector<std::uint32_t> by = representedBy(scratch, cloud.count(), levels.order);
+    ASSERT_EQ(by.size(), cloud.count());
+    double farthest = 0.0;
+    for (std::uint32_t i = 0; i < by.size(); ++i) {
+      ASSERT_LT(by[i], levels.order.size());
+      farthest = std::max(farthest, glm::length(cloud.position(i) - cloud.position(levels.order[by[i]])));
+    }
+    for (std::uint32_t place = 0; place < levels.order.size(); ++place) EXPECT_EQ(by[levels.order[place]], place);
+    if (sampling == Sampling::ntree) {
+      EXPECT_LT(farthest, 6.0 * levels.spacing);
+    }
   }
 }
 
@@ -227,21 +275,6 @@ TEST(LevelOrder, EveryPrefixSpreadsOverAllQuartersOfAPlane) {
     for (const auto& [quarter, count] : quarters)
       EXPECT_NEAR(static_cast<double>(count), static_cast<double>(prefix) / 4.0, static_cast<double>(prefix) * 0.06)
           << "prefix " << prefix;
-  }
-}
-
-TEST(LevelOrder, PassesOfADensePlaneAreEvenByThemselves) {
-  std::mt19937_64 random(19);
-  const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 200000, anyTurn(random));
-  const LevelOrder levels = orderOf(cloud, 16384);
-  EXPECT_LE(levels.passes.size(), 12u * levels.prefix.size());
-  for (std::size_t p = 1; p < levels.passes.size(); ++p) {
-    const std::span<const std::uint32_t> pass =
-        std::span<const std::uint32_t>(levels.order)
-            .subspan(levels.passes[p - 1], levels.passes[p] - levels.passes[p - 1]);
-    if (pass.size() >= 500) {
-      EXPECT_LE(nearestNeighbourVariation(cloud, pass), 0.30) << p;
-    }
   }
 }
 
