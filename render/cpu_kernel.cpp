@@ -1,5 +1,9 @@
 #include "render/cpu_kernel.h"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
 // Vectors are members of structs below, which the types without a fixed size cannot be.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -17,8 +21,19 @@ constexpr hn::ScalableTag<float> kFloat{};
 constexpr hn::RebindToSigned<hn::ScalableTag<float>> kInt{};
 constexpr hn::RebindToUnsigned<hn::ScalableTag<float>> kWord{};
 using Floats = hn::Vec<decltype(kFloat)>;
+using Ints = hn::Vec<decltype(kInt)>;
 using Words = hn::Vec<decltype(kWord)>;
 using Mask = hn::Mask<decltype(kFloat)>;
+
+/// How coordinates become grid steps. Floats: 10 or 20 bits and an offset that a float holds, so that one fused
+/// multiply-add rounds once, as converting the integer D does. Integers: everything else.
+enum class Steps { floats, integers };
+
+/// Where one vector of points is read from.
+struct VectorSource {
+  const std::uint32_t* planes[3];
+  const std::uint32_t* keep;
+};
 
 struct Cells {
   Words x, y, z;
@@ -32,8 +47,35 @@ HWY_INLINE Cells append(Cells cells, Words word) {
           hn::Or(hn::ShiftLeft<10>(cells.z), hn::And(hn::ShiftRight<20>(word), mask))};
 }
 
+/// The coordinates of one vector of points, the same for every view. One plane is left where it stands in its word.
+template <int kPlanes, Steps kSteps>
+struct Coordinates {
+  static constexpr int kStands[3] = {0, kPlanes == 1 ? 10 : 0, kPlanes == 1 ? 20 : 0};
+
+  explicit HWY_INLINE Coordinates(const VectorSource& from) {
+    if constexpr (kPlanes == 1) {
+      const Words word = hn::LoadU(kWord, from.planes[0]);
+      cells = {hn::And(word, hn::Set(kWord, 1023u)), hn::And(word, hn::Set(kWord, 1023u << 10)),
+               hn::And(word, hn::Set(kWord, 1023u << 20))};
+    } else {
+      const Words zero = hn::Zero(kWord);
+      cells = append({zero, zero, zero}, hn::LoadU(kWord, from.planes[0]));
+      cells = append(cells, hn::LoadU(kWord, from.planes[1]));
+      if constexpr (kPlanes > 2) cells = append(cells, hn::LoadU(kWord, from.planes[2]));
+    }
+    if constexpr (kSteps == Steps::floats) {
+      x = hn::ConvertTo(kFloat, hn::BitCast(kInt, cells.x));
+      y = hn::ConvertTo(kFloat, hn::BitCast(kInt, cells.y));
+      z = hn::ConvertTo(kFloat, hn::BitCast(kInt, cells.z));
+    }
+  }
+
+  Cells cells;
+  Floats x, y, z;  ///< of `cells`; Steps::floats only
+};
+
 struct Row {
-  explicit Row(const glm::vec4& row)
+  explicit HWY_INLINE Row(const glm::vec4& row)
       : x(hn::Set(kFloat, row.x)), y(hn::Set(kFloat, row.y)), z(hn::Set(kFloat, row.z)), base(hn::Set(kFloat, row.w)) {}
   HWY_INLINE Floats operator()(Floats cx, Floats cy, Floats cz) const {
     return hn::MulAdd(cx, x, hn::MulAdd(cy, y, hn::MulAdd(cz, z, base)));
@@ -41,89 +83,185 @@ struct Row {
   Floats x, y, z, base;
 };
 
-/// The transform of batch_plan.h over one vector of points at a time.
-template <int kPlanes>
+/// The arithmetic of batch_plan.h over one vector of points at a time.
+template <int kPlanes, Steps kSteps>
 class Projector {
  public:
-  Projector(const BatchTransform& t, const Viewport& v)
-      : x_(t.x), y_(t.y), depth_(t.depth), offset_(t.offset), shift_(t.shift), view_(v) {}
+  explicit HWY_INLINE Projector(const KernelView& v)
+      : x_(v.x),
+        y_(v.y),
+        depth_(v.depth),
+        halfWidth_(hn::Set(kFloat, v.port.halfWidth)),
+        halfHeight_(hn::Set(kFloat, v.port.halfHeight)),
+        width_(hn::Set(kInt, static_cast<std::int32_t>(v.port.width))),
+        view_(v) {
+    for (int axis = 0; axis < 3; ++axis) {
+      shift_[axis] = v.shift[axis] - Coordinates<kPlanes, kSteps>::kStands[axis];
+      scale_[axis] = hn::Set(kFloat, std::ldexp(1.0f, shift_[axis]));
+      offset_[axis] = hn::Set(kFloat, static_cast<float>(v.offset[axis]));
+    }
+  }
 
-  /// Appends the points of `lanes` that are in the image; returns their number.
-  HWY_INLINE std::size_t project(const std::uint32_t* const planes[3], std::size_t at, Mask lanes,
-                                 std::uint32_t firstId, std::size_t written, ProjectedBlock& out) const {
-    const Words zero = hn::Zero(kWord);
-    Cells cells = append({zero, zero, zero}, hn::LoadU(kWord, planes[0] + at));
-    if constexpr (kPlanes > 1) cells = append(cells, hn::LoadU(kWord, planes[1] + at));
-    if constexpr (kPlanes > 2) cells = append(cells, hn::LoadU(kWord, planes[2] + at));
-    const Floats cx = steps(cells.x, 0), cy = steps(cells.y, 1), cz = steps(cells.z, 2);
+  /// Appends the wanted points of one vector to `out`.
+  template <Wanted kWanted>
+  HWY_INLINE void project(const Coordinates<kPlanes, kSteps>& c, Mask lanes, std::uint32_t firstId,
+                          ProjectedBlock& out) const {
+    const Floats dx = steps(c.x, c.cells.x, 0), dy = steps(c.y, c.cells.y, 1), dz = steps(c.z, c.cells.z, 2);
+    const Floats depth = depth_(dx, dy, dz);
+    const Floats inverse = view_.port.perspective ? hn::Div(hn::Set(kFloat, 1.0f), depth) : hn::Set(kFloat, 1.0f);
+    const Floats column = hn::MulAdd(x_(dx, dy, dz), inverse, halfWidth_);
+    const Floats row = hn::MulAdd(y_(dx, dy, dz), inverse, halfHeight_);
+    Mask wanted = lanes;
+    if (!view_.inside) wanted = hn::And(wanted, inImage(column, row, depth));
+    if (view_.clip != nullptr) wanted = hn::And(wanted, inClip(dx, dy, dz));
+    if (!view_.inside && hn::AllFalse(kFloat, wanted)) return;
 
-    const Floats one = hn::Set(kFloat, 1.0f);
-    const Floats depth = depth_(cx, cy, cz);
-    const Floats inverse = view_.perspective ? hn::Div(one, depth) : one;
-    const Floats column = hn::MulAdd(x_(cx, cy, cz), inverse, hn::Set(kFloat, view_.halfWidth));
-    const Floats row = hn::MulAdd(y_(cx, cy, cz), inverse, hn::Set(kFloat, view_.halfHeight));
-
-    const Floats none = hn::Zero(kFloat);
-    const Mask inColumns = hn::And(hn::Ge(column, none), hn::Lt(column, hn::Set(kFloat, view_.width)));
-    const Mask inRows = hn::And(hn::Ge(row, none), hn::Lt(row, hn::Set(kFloat, view_.height)));
-    const Mask inFront = hn::And(lanes, hn::Ge(depth, hn::Set(kFloat, view_.nearDepth)));
-    const Mask inside = hn::And(inFront, hn::And(inColumns, inRows));
-    if (hn::AllFalse(kFloat, inside)) return 0;
-
-    const auto width = hn::Set(kInt, static_cast<std::int32_t>(view_.width));
-    const auto pixel = hn::Add(hn::Mul(hn::ConvertTo(kInt, row), width), hn::ConvertTo(kInt, column));
-    const Words id = hn::Iota(kWord, static_cast<std::uint32_t>(firstId + at));
-    const auto keep = hn::RebindMask(kWord, inside);
+    Ints pixel = hn::Add(hn::Mul(hn::ConvertTo(kInt, row), width_), hn::ConvertTo(kInt, column));
+    if constexpr (kWanted != Wanted::all) {
+      if (!view_.inside) pixel = hn::IfThenElseZero(hn::RebindMask(kInt, wanted), pixel);
+      const Floats front = frontDepth(pixel);
+      wanted = hn::And(
+          wanted,
+          hn::Le(depth, kWanted == Wanted::front ? front : hn::Mul(front, hn::Set(kFloat, DrawOptions::kBlendDepth))));
+    }
+    const Words id = hn::Iota(kWord, firstId);
+    const auto keep = hn::RebindMask(kWord, wanted);
     // Compress and store, not CompressStore: compressing into memory is microcode on Zen 4, many times slower.
-    hn::StoreU(hn::Compress(hn::BitCast(kWord, pixel), keep), kWord, out.pixel + written);
-    hn::StoreU(hn::Compress(hn::BitCast(kWord, depth), keep), kWord, out.depthBits + written);
-    hn::StoreU(hn::Compress(id, keep), kWord, out.id + written);
-    return hn::CountTrue(kWord, keep);
+    hn::StoreU(hn::Compress(hn::BitCast(kWord, pixel), keep), kWord, out.pixel + out.count);
+    hn::StoreU(hn::Compress(hn::BitCast(kWord, depth), keep), kWord, out.depthBits + out.count);
+    hn::StoreU(hn::Compress(id, keep), kWord, out.id + out.count);
+    out.count += hn::CountTrue(kWord, keep);
   }
 
  private:
-  HWY_INLINE Floats steps(Words cells, int axis) const {
+  HWY_INLINE Floats steps(Floats asFloats, Words cells, int axis) const {
+    if constexpr (kSteps == Steps::floats) return hn::MulAdd(asFloats, scale_[axis], offset_[axis]);
     const Words shifted =
         shift_[axis] < 0 ? hn::ShiftRightSame(cells, -shift_[axis]) : hn::ShiftLeftSame(cells, shift_[axis]);
-    return hn::ConvertTo(kFloat, hn::Add(hn::BitCast(kInt, shifted), hn::Set(kInt, offset_[axis])));
+    return hn::ConvertTo(kFloat, hn::Add(hn::BitCast(kInt, shifted), hn::Set(kInt, view_.offset[axis])));
+  }
+
+  HWY_INLINE Mask inImage(Floats column, Floats row, Floats depth) const {
+    const Floats none = hn::Zero(kFloat);
+    const Mask inColumns = hn::And(hn::Ge(column, none), hn::Lt(column, hn::Set(kFloat, view_.port.width)));
+    const Mask inRows = hn::And(hn::Ge(row, none), hn::Lt(row, hn::Set(kFloat, view_.port.height)));
+    return hn::And(hn::Ge(depth, hn::Set(kFloat, view_.port.nearDepth)), hn::And(inColumns, inRows));
+  }
+
+  HWY_INLINE Mask inClip(Floats dx, Floats dy, Floats dz) const {
+    const auto within = [](Floats d, float lo, float hi) {
+      return hn::And(hn::Ge(d, hn::Set(kFloat, lo)), hn::Le(d, hn::Set(kFloat, hi)));
+    };
+    Mask kept = view_.clip->clipBoxes.empty() ? hn::FirstN(kFloat, hn::Lanes(kFloat)) : hn::FirstN(kFloat, 0);
+    for (const ClipSteps& box : view_.clip->clipBoxes)
+      kept = hn::Or(kept, hn::And(within(dx, box.lo.x, box.hi.x),
+                                  hn::And(within(dy, box.lo.y, box.hi.y), within(dz, box.lo.z, box.hi.z))));
+    for (const glm::vec4& plane : view_.clip->clipPlanes)
+      kept = hn::And(kept, hn::Ge(Row(plane)(dx, dy, dz), hn::Zero(kFloat)));
+    return kept;
+  }
+
+  HWY_INLINE Floats frontDepth(Ints pixel) const {
+    constexpr int kHigh = std::endian::native == std::endian::little ? 1 : 0;
+    const auto* words = reinterpret_cast<const float*>(view_.pixels);
+    return hn::GatherIndex(kFloat, words + kHigh, hn::ShiftLeft<1>(pixel));
   }
 
   Row x_, y_, depth_;
-  glm::ivec3 offset_, shift_;
-  const Viewport& view_;
+  Floats halfWidth_, halfHeight_;
+  Ints width_;
+  Floats scale_[3], offset_[3];
+  int shift_[3];
+  const KernelView& view_;
 };
 
-template <int kPlanes>
-std::size_t projectAll(const BatchTransform& transform, const Viewport& viewport, const std::uint32_t* const planes[3],
-                       std::size_t count, std::uint32_t firstId, ProjectedBlock& out) {
-  const Projector<kPlanes> projector(transform, viewport);
-  const std::size_t lanes = hn::Lanes(kFloat);
-  const Mask all = hn::FirstN(kFloat, lanes);
-  std::size_t written = 0;
-  std::size_t at = 0;
-  for (; at + lanes <= count; at += lanes) written += projector.project(planes, at, all, firstId, written, out);
-  if (at < count) {
-    std::uint32_t tail[3][HWY_MAX_BYTES / sizeof(std::uint32_t)] = {};
-    const std::uint32_t* tailPlanes[3] = {tail[0], tail[1], tail[2]};
-    for (int p = 0; p < kPlanes; ++p)
-      for (std::size_t i = at; i < count; ++i) tail[p][i - at] = planes[p][i];
-    written += projector.project(tailPlanes, 0, hn::FirstN(kFloat, count - at),
-                                 static_cast<std::uint32_t>(firstId + at), written, out);
+template <int kPlanes, Steps kSteps, Wanted kWanted, int kViews>
+class BlockProjector {
+ public:
+  BlockProjector(const KernelView* views, ProjectedBlock* blocks)
+      : first_(views[0]), last_(views[kViews - 1]), blocks_(blocks) {}
+
+  void projectAll(const KernelPoints& points) const {
+    const std::size_t lanes = hn::Lanes(kFloat);
+    const Mask all = hn::FirstN(kFloat, lanes);
+    std::size_t at = 0;
+    for (; at + lanes <= points.count; at += lanes) {
+      VectorSource from{{}, points.keep == nullptr ? nullptr : points.keep + at};
+      for (int p = 0; p < kPlanes; ++p) from.planes[p] = points.planes[p] + at;
+      project(from, all, static_cast<std::uint32_t>(points.firstId + at));
+    }
+    if (at == points.count) return;
+    std::uint32_t tail[4][HWY_MAX_BYTES / sizeof(std::uint32_t)] = {};
+    for (int p = 0; p < kPlanes; ++p) std::copy(points.planes[p] + at, points.planes[p] + points.count, tail[p]);
+    if (points.keep != nullptr) std::copy(points.keep + at, points.keep + points.count, tail[3]);
+    project({{tail[0], tail[1], tail[2]}, points.keep == nullptr ? nullptr : tail[3]},
+            hn::FirstN(kFloat, points.count - at), static_cast<std::uint32_t>(points.firstId + at));
   }
-  return written;
+
+ private:
+  HWY_INLINE void project(const VectorSource& from, Mask drawn, std::uint32_t firstId) const {
+    const Coordinates<kPlanes, kSteps> coordinates(from);
+    if (from.keep != nullptr)
+      drawn = hn::And(drawn, hn::RebindMask(kFloat, hn::Ne(hn::LoadU(kWord, from.keep), hn::Zero(kWord))));
+    first_.template project<kWanted>(coordinates, drawn, firstId, blocks_[0]);
+    if constexpr (kViews > 1) last_.template project<kWanted>(coordinates, drawn, firstId, blocks_[1]);
+  }
+
+  Projector<kPlanes, kSteps> first_, last_;
+  ProjectedBlock* blocks_;
+};
+
+template <int kPlanes, Steps kSteps, Wanted kWanted, int kViews>
+void projectBlock(const KernelPoints& points, const KernelView* views, ProjectedBlock* blocks) {
+  BlockProjector<kPlanes, kSteps, kWanted, kViews>(views, blocks).projectAll(points);
 }
 
-std::size_t project(const BatchTransform& transform, const Viewport& viewport, const std::uint32_t* const planes[3],
-                    Precision precision, std::size_t count, std::uint32_t firstId, ProjectedBlock& out) {
-  switch (precision) {
+template <int kPlanes, Steps kSteps, int kViews>
+void projectWanted(const KernelPoints& points, const KernelView* views, Wanted wanted, ProjectedBlock* blocks) {
+  if (wanted == Wanted::all) projectBlock<kPlanes, kSteps, Wanted::all, kViews>(points, views, blocks);
+  if (wanted == Wanted::front) projectBlock<kPlanes, kSteps, Wanted::front, kViews>(points, views, blocks);
+  if (wanted == Wanted::near) projectBlock<kPlanes, kSteps, Wanted::near, kViews>(points, views, blocks);
+}
+
+template <int kViews>
+void projectViews(const KernelPoints& points, const KernelView* views, Wanted wanted, ProjectedBlock* blocks) {
+  bool floats = true;
+  for (int v = 0; v < kViews; ++v)
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int64_t offset = views[v].offset[axis];
+      floats = floats && static_cast<std::int64_t>(static_cast<float>(offset)) == offset;
+    }
+  switch (points.precision) {
     case Precision::low10:
-      return projectAll<1>(transform, viewport, planes, count, firstId, out);
+      return floats ? projectWanted<1, Steps::floats, kViews>(points, views, wanted, blocks)
+                    : projectWanted<1, Steps::integers, kViews>(points, views, wanted, blocks);
     case Precision::medium20:
-      return projectAll<2>(transform, viewport, planes, count, firstId, out);
+      return floats ? projectWanted<2, Steps::floats, kViews>(points, views, wanted, blocks)
+                    : projectWanted<2, Steps::integers, kViews>(points, views, wanted, blocks);
     case Precision::full30:
-      return projectAll<3>(transform, viewport, planes, count, firstId, out);
+      return projectWanted<3, Steps::integers, kViews>(points, views, wanted, blocks);
   }
-  return 0;
+}
+
+void project(const KernelPoints& points, const KernelView* views, int viewCount, Wanted wanted,
+             ProjectedBlock* blocks) {
+  for (int v = 0; v < viewCount; ++v) blocks[v].count = 0;
+  if (viewCount == 1) projectViews<1>(points, views, wanted, blocks);
+  if (viewCount == 2) projectViews<2>(points, views, wanted, blocks);
+}
+
+void merge(PackedPixel* into, PackedPixel* from, std::size_t count) {
+  const hn::ScalableTag<std::uint64_t> tag;
+  const auto empty = hn::Set(tag, kEmptyPixel);
+  std::size_t i = 0;
+  for (; i + hn::Lanes(tag) <= count; i += hn::Lanes(tag)) {
+    hn::StoreU(hn::Min(hn::LoadU(tag, into + i), hn::LoadU(tag, from + i)), tag, into + i);
+    hn::StoreU(empty, tag, from + i);
+  }
+  for (; i < count; ++i) {
+    into[i] = std::min(into[i], from[i]);
+    from[i] = kEmptyPixel;
+  }
 }
 
 const char* targetName() { return hwy::TargetName(HWY_TARGET); }
@@ -137,12 +275,16 @@ HWY_AFTER_NAMESPACE();
 namespace strata {
 
 HWY_EXPORT(project);
+HWY_EXPORT(merge);
 HWY_EXPORT(targetName);
 
-std::size_t projectPoints(const BatchTransform& transform, const Viewport& viewport,
-                          const std::uint32_t* const planes[3], Precision precision, std::size_t count,
-                          std::uint32_t firstId, ProjectedBlock& out) {
-  return HWY_DYNAMIC_DISPATCH(project)(transform, viewport, planes, precision, count, firstId, out);
+void projectPoints(const KernelPoints& points, const KernelView* views, int viewCount, Wanted wanted,
+                   ProjectedBlock* blocks) {
+  HWY_DYNAMIC_DISPATCH(project)(points, views, viewCount, wanted, blocks);
+}
+
+void mergePixels(PackedPixel* into, PackedPixel* from, std::size_t count) {
+  HWY_DYNAMIC_DISPATCH(merge)(into, from, count);
 }
 
 const char* kernelTarget() { return HWY_DYNAMIC_DISPATCH(targetName)(); }

@@ -1,60 +1,33 @@
 #include "render/cpu_rasterizer.h"
 
 #include <algorithm>
-#include <atomic>
 
-#include "render/batch_plan.h"
+#include "render/cpu_draw.h"
 #include "render/cpu_kernel.h"
 #include "render/resolve.h"
 #include "render/stopwatch.h"
-#include "render/thread_pool.h"
 
 namespace strata {
 namespace {
 
-constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 16;
-
-/// The minimum does not depend on the order of the threads, so a frame repeats bit for bit.
-void lower(PackedPixel& target, PackedPixel value) {
-  std::atomic_ref<PackedPixel> pixel(target);
-  PackedPixel seen = pixel.load(std::memory_order_relaxed);
-  while (value < seen && !pixel.compare_exchange_weak(seen, value, std::memory_order_relaxed)) {
-  }
-}
-
-void drawBatch(const DrawPlan& plan, const PlannedBatch& batch, const Viewport& view,
-               std::vector<PackedPixel>& pixels) {
-  const GridTransform& grid = plan.grids[batch.place.grid];
-  const BatchTransform transform{grid.x, grid.y, grid.depth, batch.place.offset, batch.place.shift};
-  ProjectedBlock block;
-  for (std::uint32_t done = 0; done < batch.pointCount; done += ProjectedBlock::kPoints) {
-    const std::size_t count = std::min<std::size_t>(batch.pointCount - done, ProjectedBlock::kPoints);
-    const std::uint32_t* planes[3] = {};
-    for (int p = 0; p < static_cast<int>(batch.precision); ++p)
-      planes[p] = batch.node->position[p].data() + batch.firstPoint + done;
-    const std::size_t inside =
-        projectPoints(transform, view, planes, batch.precision, count, batch.firstId + done, block);
-    for (std::size_t i = 0; i < inside; ++i) lower(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
-  }
-}
+constexpr std::size_t kViewsAtOnce = 2;
 
 class CpuRasterizer final : public Rasterizer {
  public:
   explicit CpuRasterizer(const RasterizerOptions& options) : pool_(options.threads) {}
 
   DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) override {
-    Stopwatch watch;
-    planBatches(list, view, options, plan_);
-    clear(view);
-    const Viewport port = viewport(plan_.constants);
-    pool_.parallelFor(plan_.batches.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) drawBatch(plan_, plan_.batches[i], port, buffer_.pixels);
-    });
-    DrawStats stats = planStats(plan_);
-    stats.drawMs = watch.lapMs();
-    resolveFrame(list, view, options, buffer_, pool_, frame);
-    stats.resolveMs = watch.lapMs();
-    return stats;
+    return drawViews(list, {&view, 1}, options, {&frame, 1});
+  }
+
+  DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
+                      std::span<Frame> frames) override {
+    DrawStats sum;
+    for (std::size_t first = 0; first < std::min(views.size(), frames.size()); first += kViewsAtOnce) {
+      const std::size_t count = std::min({kViewsAtOnce, views.size() - first, frames.size() - first});
+      addStats(drawSome(list, views.subspan(first, count), options, frames.subspan(first, count)), sum);
+    }
+    return sum;
   }
 
   std::string_view name() const override { return "cpu"; }
@@ -65,19 +38,26 @@ class CpuRasterizer final : public Rasterizer {
   }
 
  private:
-  void clear(const View& view) {
-    buffer_.width = std::max(view.width, 0);
-    buffer_.height = std::max(view.height, 0);
-    buffer_.pixels.resize(static_cast<std::size_t>(buffer_.width) * static_cast<std::size_t>(buffer_.height));
-    pool_.parallelFor(buffer_.pixels.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
-      std::fill(buffer_.pixels.begin() + static_cast<std::ptrdiff_t>(begin),
-                buffer_.pixels.begin() + static_cast<std::ptrdiff_t>(end), kEmptyPixel);
-    });
+  DrawStats drawSome(const RenderList& list, std::span<const View> views, const DrawOptions& options,
+                     std::span<Frame> frames) {
+    Stopwatch watch;
+    const std::span<CpuTarget> targets(targets_, views.size());
+    DrawStats sum;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      planBatches(list, views[v], options, targets[v].plan);
+      clearTarget(targets[v], pool_);
+      addStats(planStats(targets[v].plan), sum);
+    }
+    drawBatches(targets, options, pool_);
+    sum.drawMs = watch.lapMs();
+    for (std::size_t v = 0; v < views.size(); ++v)
+      resolveFrame(list, views[v], options, targets[v].buffer, pool_, frames[v]);
+    sum.resolveMs = watch.lapMs();
+    return sum;
   }
 
   ThreadPool pool_;
-  DrawPlan plan_;
-  VisibilityBuffer buffer_;
+  CpuTarget targets_[kViewsAtOnce];
 };
 
 }  // namespace

@@ -24,7 +24,9 @@ std::unique_ptr<Rasterizer> createFastest(const RasterizerOptions& options, std:
   }
 }
 
-void add(const DrawStats& one, DrawStats& sum) {
+}  // namespace
+
+void addStats(const DrawStats& one, DrawStats& sum) {
   sum.pointsDrawn += one.pointsDrawn;
   sum.batchesDrawn += one.batchesDrawn;
   sum.batchesCulled += one.batchesCulled;
@@ -38,13 +40,11 @@ void add(const DrawStats& one, DrawStats& sum) {
   sum.resolveMs += one.resolveMs;
 }
 
-}  // namespace
-
 DrawStats Rasterizer::drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
                                 std::span<Frame> frames) {
   DrawStats sum;
   for (std::size_t i = 0; i < std::min(views.size(), frames.size()); ++i)
-    add(draw(list, views[i], options, frames[i]), sum);
+    addStats(draw(list, views[i], options, frames[i]), sum);
   return sum;
 }
 

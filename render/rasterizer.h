@@ -24,6 +24,9 @@ struct DrawStats {
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
 };
 
+/// Adds what one draw did to the sum of several.
+void addStats(const DrawStats& one, DrawStats& sum);
+
 /// Turns a RenderList into pixels. One thread uses it: the render thread, which owns the GL context if there is one.
 /// All implementations give the picture of the oracle (tests/support/oracle.h): for each pixel the point with the
 /// smallest depth wins, compared as 32-bit float; equal floats go to the lower id. Points of one store that are placed

@@ -18,6 +18,9 @@ class ThreadPool {
   /// Calls body(begin, end) over parts of [0, count) of at most `grain` each; returns when all are done.
   void parallelFor(std::size_t count, std::size_t grain,
                    const std::function<void(std::size_t, std::size_t)>& body) const;
+  /// The same with body(begin, end, slot): a slot in [0, threads()) is used by one thread at a time.
+  void parallelForSlots(std::size_t count, std::size_t grain,
+                        const std::function<void(std::size_t, std::size_t, std::size_t)>& body) const;
 
  private:
   struct Arena;

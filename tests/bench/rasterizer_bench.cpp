@@ -1,6 +1,9 @@
 // Points a second of each rasterizer at 1920 x 1080. Not run by ctest: rasterizer_bench --benchmark_filter=...
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "core/error.h"
 #include "render/rasterizer.h"
 #include "tests/support/synthetic_nodes.h"
@@ -8,12 +11,19 @@
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kPointsOfGround = 8000000;  // 10 million with what stands on it
-constexpr int kTiles = 14;                          // about 40 000 points a node
+constexpr double kPointsANode = 40000.0;
+
+/// Points in millions: STRATA_BENCH_POINTS, else 10.
+double millions() {
+  const char* text = std::getenv("STRATA_BENCH_POINTS");
+  return text == nullptr ? 10.0 : std::max(std::atof(text), 0.001);
+}
 
 const RenderList& town() {
+  // A fifth of the points stands on the ground; a tile is two nodes, of which the upper one is small.
   static const RenderList list =
-      test::makeTown(glm::dvec3(456789.0, 5412345.0, 300.0), 500.0, kPointsOfGround, 1, kTiles);
+      test::makeTown(glm::dvec3(456789.0, 5412345.0, 300.0), 500.0, static_cast<std::uint32_t>(0.8e6 * millions()), 1,
+                     std::max(1, static_cast<int>(std::sqrt(0.8e6 * millions() / kPointsANode))));
   return list;
 }
 
