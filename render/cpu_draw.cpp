@@ -1,7 +1,5 @@
 #include "render/cpu_draw.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -13,7 +11,6 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 16;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kMostViews = 2;
 constexpr std::size_t kPointsAPixelToOwn = 2;  ///< for each thread but the first; measured, docs/rasterizers.md
 
@@ -120,20 +117,8 @@ void add(std::uint32_t& sum, std::uint32_t value) {
   std::atomic_ref<std::uint32_t>(sum).fetch_add(value, std::memory_order_relaxed);
 }
 
-/// A batch's pixels lie in many rows, each in pages of its own: large pages spare most of the look-ups.
-void wantHugePages(std::vector<PackedPixel>& pixels) {
-  const auto begin = (reinterpret_cast<std::uintptr_t>(pixels.data()) + kHugePage - 1) / kHugePage * kHugePage;
-  const auto end = reinterpret_cast<std::uintptr_t>(pixels.data() + pixels.capacity()) / kHugePage * kHugePage;
-  if (begin < end) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-}
-
 void fillPixels(std::vector<PackedPixel>& pixels, std::size_t count, const ThreadPool& pool) {
-  if (pixels.size() != count) {
-    pixels = {};
-    pixels.reserve(count);
-    wantHugePages(pixels);
-    pixels.resize(count);
-  }
+  resizePixels(pixels, count);
   pool.parallelFor(count, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
     std::fill(pixels.begin() + static_cast<std::ptrdiff_t>(begin), pixels.begin() + static_cast<std::ptrdiff_t>(end),
               kEmptyPixel);
@@ -146,10 +131,9 @@ bool ownPixelsPay(const CpuTarget& target, int threads) {
                             kPointsAPixelToOwn * target.buffer.pixels.size() * static_cast<std::size_t>(threads - 1);
 }
 
-void makeOwnPixels(CpuTarget& target, int threads, const ThreadPool& pool) {
+void makeOwnPixels(CpuTarget& target, int threads) {
   target.privatePixels.resize(static_cast<std::size_t>(threads - 1));
-  for (auto& own : target.privatePixels)
-    if (own.size() != target.buffer.pixels.size()) fillPixels(own, target.buffer.pixels.size(), pool);
+  for (auto& own : target.privatePixels) resizePixels(own, target.buffer.pixels.size());
 }
 
 void mergeOwnPixels(CpuTarget& target, const ThreadPool& pool) {
@@ -165,7 +149,7 @@ void drawFront(std::span<CpuTarget> targets, const std::vector<Task>& tasks, con
   bool own = true;
   for (const CpuTarget& target : targets) own = own && ownPixelsPay(target, threads);
   for (CpuTarget& target : targets)
-    if (own) makeOwnPixels(target, threads, pool);
+    if (own) makeOwnPixels(target, threads);
   const bool shared = threads > 1 && !own;
   pool.parallelForSlots(tasks.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t slot) {
     const auto pixelsOf = [&](std::size_t view) {

@@ -2,23 +2,14 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <limits>
+
+#include "render/post_kernel.h"
 
 namespace strata {
 namespace {
 
 constexpr std::size_t kRowsAtOnce = 16;
 constexpr float kEdlGain = 40.0f;  ///< a depth step of 1 % to all neighbours darkens to about 0.6 at strength 1
-
-std::uint32_t scaleColour(std::uint32_t colour, float factor) {
-  std::uint32_t result = colour & 0xff000000u;
-  for (int shift = 0; shift < 24; shift += 8) {
-    const float channel = static_cast<float>(colour >> shift & 255u) * factor;
-    result |= static_cast<std::uint32_t>(channel + 0.5f) << shift;
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -32,18 +23,46 @@ PointSizes::PointSizes(const DrawOptions& options, const View& view)
   pixelsAtUnitDepth_ = static_cast<float>(pixelsAt(unit, static_cast<double>(options.pointMetres), 1.0));
 }
 
+namespace {
+
+/// Points of one size: strips of rows stay in the cache between the two directions.
+void dilateEvenly(VisibilityBuffer& buffer, std::size_t size, const ThreadPool& pool) {
+  const auto width = static_cast<std::size_t>(buffer.width), height = static_cast<std::size_t>(buffer.height);
+  resizePixels(buffer.scratch.pixels, buffer.pixels.size());
+  pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const std::size_t first = begin - std::min(begin, size / 2), last = std::min(end + (size - 1) / 2, height);
+    std::vector<PackedPixel> strip((last - first) * width);
+    for (std::size_t y = first; y < last; ++y)
+      dilateRow(&buffer.pixels[y * width], &strip[(y - first) * width], width, size);
+    for (std::size_t y = begin; y < end; ++y) {
+      PackedPixel* to = &buffer.scratch.pixels[y * width];
+      std::fill_n(to, width, kEmptyPixel);
+      for (std::size_t row = y - std::min(y, size / 2); row <= std::min(y + (size - 1) / 2, height - 1); ++row)
+        lowerRow(&strip[(row - first) * width], to, width);
+    }
+  });
+  buffer.pixels.swap(buffer.scratch.pixels);
+}
+
+}  // namespace
+
 void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool) {
-  if (sizes.alwaysOne()) return;
+  if (sizes.alwaysOne() || buffer.pixels.empty()) return;
+  if (sizes.even()) return dilateEvenly(buffer, static_cast<std::size_t>(sizes.at(1.0f)), pool);
   const auto width = static_cast<std::size_t>(buffer.width);
   const auto height = static_cast<std::size_t>(buffer.height);
-  std::vector<PackedPixel> rows(buffer.pixels.size(), kEmptyPixel);
-  std::vector<std::uint8_t> sizeOf(rows.size(), 1);  // of the point in `rows`
+  std::vector<PackedPixel>& rows = buffer.scratch.pixels;
+  std::vector<std::uint8_t>& sizeOf = buffer.scratch.sizes;  // of the point in `rows`
+  resizePixels(rows, buffer.pixels.size());
+  sizeOf.resize(rows.size());
   std::atomic<int> largest{1};
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     int largestHere = 1;
     for (std::size_t y = begin; y < end; ++y) {
       const PackedPixel* from = &buffer.pixels[y * width];
       PackedPixel* to = &rows[y * width];
+      std::fill_n(to, width, kEmptyPixel);
+      std::fill_n(&sizeOf[y * width], width, std::uint8_t{1});
       for (std::size_t x = 0; x < width; ++x) {
         if (from[x] == kEmptyPixel) continue;
         const auto size = static_cast<std::size_t>(sizes.at(pixelDepth(from[x])));
@@ -78,94 +97,33 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
   });
 }
 
-FillSizes::FillSizes(const DrawOptions& options, const View& view)
-    : least_(std::clamp(options.fill, 1, DrawOptions::kLargestFill) | 1),
-      gaze_(options.gaze.on),
-      atX_(options.gaze.at.x * static_cast<float>(view.width)),
-      atY_(options.gaze.at.y * static_cast<float>(view.height)),
-      third_(static_cast<float>(std::max(view.height, 1)) / 3.0f) {}
-
-int FillSizes::at(int x, int y) const {
-  if (!gaze_) return least_;
-  const float away = std::hypot(static_cast<float>(x) + 0.5f - atX_, static_cast<float>(y) + 0.5f - atY_);
-  return std::max(least_, away < third_ ? 3 : away < 2.0f * third_ ? 5 : 7);
-}
-
-namespace {
-
-struct Step {
-  int x, y;
-};
-
-/// The places of the largest window by their distance from its middle.
-std::vector<Step> stepsByDistance() {
-  std::vector<Step> steps;
-  const int reach = DrawOptions::kLargestFill / 2;
-  for (int y = -reach; y <= reach; ++y)
-    for (int x = -reach; x <= reach; ++x) steps.push_back({x, y});
-  std::stable_sort(steps.begin(), steps.end(),
-                   [](const Step& a, const Step& b) { return a.x * a.x + a.y * a.y < b.x * b.x + b.y * b.y; });
-  return steps;
-}
-
-}  // namespace
-
-void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool) {
-  if (sizes.none()) return;
-  const std::vector<Step> steps = stepsByDistance();
-  const std::vector<PackedPixel> from = buffer.pixels;
-  const auto at = [&](int x, int y) {
-    return from[static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.width) + static_cast<std::size_t>(x)];
-  };
-  const auto filled = [&](int x, int y) {
-    const int reach = sizes.at(x, y) / 2;
-    const int left = std::max(x - reach, 0), right = std::min(x + reach, buffer.width - 1);
-    const int top = std::max(y - reach, 0), bottom = std::min(y + reach, buffer.height - 1);
-    PackedPixel front = kEmptyPixel;
-    for (int v = top; v <= bottom; ++v)
-      for (int u = left; u <= right; ++u) front = std::min(front, at(u, v));
-    const float deepest = pixelDepth(front) * DrawOptions::kBlendDepth;
-    if (front == kEmptyPixel || pixelDepth(at(x, y)) <= deepest) return at(x, y);
-    for (const Step& step : steps) {
-      const int u = x + step.x, v = y + step.y;
-      if (u < left || u > right || v < top || v > bottom) continue;
-      if (pixelDepth(at(u, v)) <= deepest) return at(u, v);
-    }
-    return at(x, y);
-  };
-  pool.parallelFor(static_cast<std::size_t>(std::max(buffer.height, 0)), kRowsAtOnce,
-                   [&](std::size_t begin, std::size_t end) {
-                     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-                       for (int x = 0; x < buffer.width; ++x)
-                         buffer.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(buffer.width) +
-                                       static_cast<std::size_t>(x)] = filled(x, y);
-                   });
-}
-
-void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, const ThreadPool& pool) {
+void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, std::vector<float>& scratch,
+                     const ThreadPool& pool) {
   const auto width = static_cast<std::size_t>(frame.width);
   const auto height = static_cast<std::size_t>(frame.height);
-  std::vector<float> logDepth(frame.depth.size());
+  scratch.resize(frame.depth.size());
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * width; i < end * width; ++i)
-      logDepth[i] = frame.pointId[i] == Frame::kNoPoint ? std::numeric_limits<float>::infinity()
-                                                        : std::log2(std::max(frame.depth[i], 1e-30f));
+    log2Row(frame.depth.data() + begin * width, scratch.data() + begin * width, (end - begin) * width);
   });
+  const auto shadeSpan = [&](std::size_t y, std::size_t begin, std::size_t end, int size) {
+    const auto apart = static_cast<std::size_t>(size);
+    const float* above = &scratch[(y - std::min(y, apart)) * width];
+    const float* below = &scratch[std::min(y + apart, height - 1) * width];
+    const float gain = kEdlGain / 8.0f * strength / static_cast<float>(size);
+    shadeRow({above, &scratch[y * width], below, width, apart}, begin, end, gain, &frame.colour[y * width]);
+  };
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t y = begin; y < end; ++y)
-      for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t at = y * width + x;
-        if (frame.pointId[at] == Frame::kNoPoint) continue;
-        const auto apart = static_cast<std::size_t>(sizes.at(frame.depth[at]));
-        const std::size_t rows[3] = {y - std::min(y, apart), y, std::min(y + apart, height - 1)};
-        const std::size_t columns[3] = {x - std::min(x, apart), x, std::min(x + apart, width - 1)};
-        float inFront = 0.0f;
-        for (const std::size_t row : rows)
-          for (const std::size_t column : columns)
-            inFront += std::max(0.0f, logDepth[at] - logDepth[row * width + column]);
-        const float gain = kEdlGain / 8.0f * strength / static_cast<float>(apart);
-        if (inFront > 0.0f) frame.colour[at] = scaleColour(frame.colour[at], std::exp(-inFront * gain));
+    for (std::size_t y = begin; y < end; ++y) {
+      if (sizes.even()) {
+        shadeSpan(y, 0, width, sizes.at(1.0f));
+        continue;
       }
+      for (std::size_t x = 0, next; x < width; x = next) {  // run by run of one size
+        const int size = sizes.at(frame.depth[y * width + x]);
+        for (next = x + 1; next < width && sizes.at(frame.depth[y * width + next]) == size;) ++next;
+        shadeSpan(y, x, next, size);
+      }
+    }
   });
 }
 

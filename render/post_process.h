@@ -23,6 +23,8 @@ class PointSizes {
                ? static_cast<int>(std::min(pixels + 0.5f, static_cast<float>(DrawOptions::kLargestPoint)))
                : least_;
   }
+  /// True where at() is the same for every depth.
+  bool even() const { return pixelsAtUnitDepth_ <= 0.0f; }
   bool alwaysOne() const { return least_ <= 1 && pixelsAtUnitDepth_ <= 0.0f; }
 
  private:
@@ -59,6 +61,8 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
 /// Eye-dome lighting (Boucheny 2009): darkens a pixel by how far its eight neighbours stand in front of it,
 /// in log2 of the depth, so that the effect does not depend on the scene's scale. The background stays.
 /// Neighbours are as far away as points are wide, so that single points of a slope do not get outlines.
-void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, const ThreadPool& pool);
+/// `scratch` is memory to work in, of any size.
+void eyeDomeLighting(Frame& frame, float strength, const PointSizes& sizes, std::vector<float>& scratch,
+                     const ThreadPool& pool);
 
 }  // namespace strata

@@ -142,7 +142,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
   const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
   const FillSizes fills(options, view);
   const bool grown = !sizes.alwaysOne() || !fills.none();
-  std::vector<std::uint32_t> ownColours, ownIds;
+  std::vector<std::uint32_t>&ownColours = buffer.scratch.colours, &ownIds = buffer.scratch.ids;
   if (grown) ownColours.resize(count);
   std::uint32_t* const colours = grown ? ownColours.data() : frame.colour.data();
   pool.parallelFor(count, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -166,7 +166,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
                        }
                      }
                    });
-  if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, pool);
+  if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);
 }
 
 }  // namespace strata

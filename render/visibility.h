@@ -22,6 +22,18 @@ struct ColourSum {
   std::uint32_t red = 0, green = 0, blue = 0, count = 0;
 };
 
+/// What resolving works with, kept from frame to frame: fresh memory costs more than the work.
+struct ResolveScratch {
+  std::vector<PackedPixel> pixels;
+  std::vector<std::uint32_t> colours, ids;
+  std::vector<std::uint8_t> sizes;
+  std::vector<float> depths;
+};
+
+/// Gives `pixels` this size, in large pages where the system has them: the pixels of a batch lie in many rows, each in
+/// pages of its own. Empty pixels where the size changed; else nothing happens.
+void resizePixels(std::vector<PackedPixel>& pixels, std::size_t count);
+
 /// Row by row from the top.
 struct VisibilityBuffer {
   int width = 0;
@@ -29,6 +41,7 @@ struct VisibilityBuffer {
   std::vector<PackedPixel> pixels{};
   std::vector<ColourSum> sums{};        ///< Shading::highQuality: one a pixel; not read otherwise
   std::vector<std::uint32_t> counts{};  ///< ColourMode::overdraw: points that fell on each pixel; likewise
+  ResolveScratch scratch{};
 };
 
 }  // namespace strata

@@ -74,6 +74,8 @@ TEST(Dilate, GivesPointsOfGrowingSizeTheSameAsDrawingEachAlone) {
   EXPECT_EQ(found.pixels, expected.pixels);
 }
 
+std::vector<float> scratch;
+
 Frame flatFrame(int side, float depth) {
   Frame frame;
   frame.width = frame.height = side;
@@ -92,7 +94,7 @@ TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
     frame.pointId[i] = Frame::kNoPoint;
   }
   const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, PointSizes(1), pool);
+  eyeDomeLighting(frame, 1.0f, PointSizes(1), scratch, pool);
   EXPECT_EQ(frame.colour, before);
 }
 
@@ -102,7 +104,7 @@ TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
   for (std::size_t i = 0; i < frame.depth.size(); ++i)
     if (i % 9 >= 5) frame.depth[i] = 6.0f;
   const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, PointSizes(1), pool);
+  eyeDomeLighting(frame, 1.0f, PointSizes(1), scratch, pool);
   for (std::size_t i = 0; i < frame.colour.size(); ++i) {
     if (i % 9 == 5)
       EXPECT_LT(frame.colour[i] & 255u, before[i] & 255u);
@@ -117,8 +119,8 @@ TEST(EyeDomeLighting, DoesNotDependOnTheScaleOfTheScene) {
   Frame small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
   small.depth[12] *= 1.125f;
   large.depth[12] *= 1.125f;
-  eyeDomeLighting(small, 0.3f, PointSizes(1), pool);
-  eyeDomeLighting(large, 0.3f, PointSizes(1), pool);
+  eyeDomeLighting(small, 0.3f, PointSizes(1), scratch, pool);
+  eyeDomeLighting(large, 0.3f, PointSizes(1), scratch, pool);
   EXPECT_EQ(small.colour, large.colour);
 }
 
