@@ -9,23 +9,26 @@ void FailedNodes::add(std::uint32_t node, const std::string& reason) {
   std::size_t nodes = 0;
   {
     const std::lock_guard lock(mutex_);
-    int& attempts = attempts_[node];
-    first = attempts == 0;
-    ++attempts;
+    Failure& failure = byNode_[node];
+    first = failure.attempts == 0;
+    auto wait = firstRetry_;
+    for (int i = 0; i < failure.attempts; ++i) wait *= kBackOff;
+    failure.retryAt = Clock::now() + wait;
+    ++failure.attempts;
     ++failures_;
-    if (attempts == kMaxAttempts) ++givenUp_;
-    nodes = attempts_.size();
+    if (failure.attempts == kMaxAttempts) ++givenUp_;
+    nodes = byNode_.size();
   }
   if (!first || nodes > kMaxLogged) return;
   logWarning(reason);
   if (nodes == kMaxLogged) logWarning("more nodes that fail to load are counted, but not named");
 }
 
-void FailedNodes::copyIfNewer(std::unordered_map<std::uint32_t, int>& attempts, std::uint64_t& version) const {
+void FailedNodes::copyIfNewer(ByNode& failures, std::uint64_t& version) const {
   const std::lock_guard lock(mutex_);
   if (version == failures_) return;
   version = failures_;
-  attempts = attempts_;
+  failures = byNode_;
 }
 
 std::uint64_t FailedNodes::failures() const {
@@ -33,10 +36,10 @@ std::uint64_t FailedNodes::failures() const {
   return failures_;
 }
 
-bool FailedNodes::outOfTries(std::uint32_t node) const {
+bool FailedNodes::mustWait(std::uint32_t node) const {
   const std::lock_guard lock(mutex_);
-  const auto found = attempts_.find(node);
-  return found != attempts_.end() && found->second >= kMaxAttempts;
+  const auto found = byNode_.find(node);
+  return found != byNode_.end() && found->second.mustWait(Clock::now());
 }
 
 std::uint64_t FailedNodes::givenUp() const {

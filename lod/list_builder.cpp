@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lod/failed_nodes.h"
+#include "io/node_codec.h"
 #include "lod/node_loader.h"
 
 namespace strata {
@@ -11,8 +11,6 @@ namespace {
 
 /// A richer version of a node that is drawn already waits behind nodes that are missing and about as urgent.
 constexpr float kUpgradeWeight = 0.25f;
-/// A node that failed goes behind the others before it is tried again.
-constexpr float kRetryWeight = 1e-3f;
 
 }  // namespace
 
@@ -39,30 +37,46 @@ std::uint32_t ListBuilder::takeWhatFits(const Selection& selection) {
   return static_cast<std::uint32_t>(left);
 }
 
-void ListBuilder::request(const SelectedNode& wanted, bool resident, const Attempts& attempts,
-                          std::vector<LoadRequest>& requests) const {
+LoadRequest ListBuilder::requestFor(const SelectedNode& wanted) const {
   const NodeRecord& record = store_.hierarchy().nodes[wanted.node];
-  LoadRequest request{wanted.node, usefulPrecision(record, wanted.precision), wanted.priority};
-  if (resident) request.priority *= kUpgradeWeight;
-  const auto failed = attempts.find(wanted.node);
-  for (int i = failed == attempts.end() ? 0 : failed->second; i > 0; --i) request.priority *= kRetryWeight;
-  requests.push_back(request);
+  LoadRequest request;
+  request.node = wanted.node;
+  request.precision = usefulPrecision(record, wanted.precision);
+  request.priority = wanted.priority;
+  request.bytes = drawBytes(record, request.precision);
+  request.offset = record.offset;
+  return request;
 }
 
-ListBuilder::Result ListBuilder::build(const Selection& selection, const Attempts& attempts, PinnedList& out,
+void ListBuilder::lookAhead(const Selection& selection, const FailedNodes::ByNode& failed,
+                            std::vector<LoadRequest>& requests) {
+  std::uint64_t bytes = wantedBytes_;
+  for (const SelectedNode& selected : selection.nodes) {
+    const std::uint32_t mark = marks_[selected.node];
+    if (mark / kMarks == pass_) continue;  // wanted now
+    bytes += nodeBytesBound(store_.hierarchy().nodes[selected.node], store_.info());
+    if (bytes > cache_.capacityBytes()) return;
+    LoadRequest request = requestFor(selected);
+    if (cache_.loadedPlanes(selected.node) >= static_cast<int>(request.precision) || failed.contains(selected.node))
+      continue;
+    request.ahead = true;
+    requests.push_back(request);
+  }
+}
+
+ListBuilder::Result ListBuilder::build(const Selection& selection, const FailedNodes::ByNode& failed, PinnedList& out,
                                        std::vector<LoadRequest>& requests) {
   Result result;
   requests.clear();
+  drawn_.clear();
   result.overCapacity = takeWhatFits(selection);
   cache_.pin(indices_, found_, out.pins);
+  const auto now = FailedNodes::Clock::now();
 
   ++pass_;
-  const std::uint32_t drawn = pass_ * 2 + kDrawn;
-  const std::uint32_t blocked = pass_ * 2 + kBlocked;
-  const auto outOfTries = [&attempts](std::uint32_t node) {
-    const auto failed = attempts.find(node);
-    return failed != attempts.end() && failed->second >= FailedNodes::kMaxAttempts;
-  };
+  const std::uint32_t drawn = pass_ * kMarks + kDrawn;
+  const std::uint32_t blocked = pass_ * kMarks + kBlocked;
+  const std::uint32_t missing = pass_ * kMarks + kMissing;
   out.list.pointCount = 0;
   out.list.missingNodes = result.overCapacity;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
@@ -72,23 +86,37 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const Attempt
     const bool resident = found_[i] != nullptr;
     ++(resident ? result.resident : result.absent);
 
-    if (above == blocked || (!resident && outOfTries(wanted.node))) {
+    const auto failure = failed.find(wanted.node);
+    const bool hasFailed = failure != failed.end();
+    if (above == blocked || (!resident && hasFailed && failure->second.outOfTries())) {
       marks_[wanted.node] = blocked;
       ++out.list.missingNodes;
       continue;
     }
     const NodeRecord& record = store_.hierarchy().nodes[wanted.node];
-    const int planes = static_cast<int>(usefulPrecision(record, wanted.precision));
-    const bool poor = resident && wanted.pointCount > 0 && found_[i]->loadedPlanes() < planes;
+    LoadRequest request = requestFor(wanted);
+    request.alone = hasFailed;
+    const bool poor =
+        resident && wanted.pointCount > 0 && found_[i]->loadedPlanes() < static_cast<int>(request.precision);
+    if (poor) request.priority *= kUpgradeWeight;
     // While both versions of a node are held there has to be room for both.
     const bool roomForBoth = poor && wantedBytes_ + nodeBytesBound(record, store_.info()) <= cache_.capacityBytes();
-    if (!resident || (roomForBoth && !outOfTries(wanted.node))) request(wanted, resident, attempts, requests);
+    if (!resident || roomForBoth) {
+      if (!hasFailed || !failure->second.mustWait(now)) {
+        requests.push_back(request);
+      } else if (!failure->second.outOfTries()) {
+        ++result.waiting;
+        result.retryAt = std::min(result.retryAt, failure->second.retryAt);
+      }
+    }
 
     if (!resident || above != drawn) {
+      marks_[wanted.node] = missing;
       ++out.list.missingNodes;
       continue;
     }
     marks_[wanted.node] = drawn;
+    drawn_.push_back(wanted.node);
     const std::uint32_t points = std::min(wanted.pointCount, found_[i]->pointCount());
     out.list.items.push_back({std::move(found_[i]), points});
     out.list.pointCount += points;

@@ -1,10 +1,11 @@
 #pragma once
 #include <cstdint>
-#include <unordered_map>
+#include <span>
 #include <vector>
 
 #include "core/render_list.h"
 #include "io/store.h"
+#include "lod/failed_nodes.h"
 #include "lod/load_queue.h"
 #include "lod/node_cache.h"
 #include "lod/selection.h"
@@ -21,12 +22,12 @@ struct PinnedList {
 /// scratch memory for the next pass.
 class ListBuilder {
  public:
-  using Attempts = std::unordered_map<std::uint32_t, int>;
-
   struct Result {
     std::uint32_t resident = 0;      ///< wanted nodes that are in memory
     std::uint32_t absent = 0;        ///< wanted nodes that are not
     std::uint32_t overCapacity = 0;  ///< wanted, but the cache is too small to ever hold them beside the more urgent
+    std::uint32_t waiting = 0;       ///< failed, and not yet to be tried again ...
+    FailedNodes::Clock::time_point retryAt = FailedNodes::Clock::time_point::max();  ///< ... before this
   };
 
   /// The arguments have to outlive the builder.
@@ -34,25 +35,32 @@ class ListBuilder {
 
   /// Fills `out.list.items` and `out.pins`, which must be empty, and replaces `requests`. A node is drawn when it and
   /// all its ancestors are resident. Nodes out of tries, and all below them, are not asked for again.
-  Result build(const Selection& selection, const Attempts& attempts, PinnedList& out,
+  Result build(const Selection& selection, const FailedNodes::ByNode& failed, PinnedList& out,
                std::vector<LoadRequest>& requests);
+
+  /// After build(): adds requests for what another selection, of a view to come, wants beyond it, as far as the cache
+  /// has room for both.
+  void lookAhead(const Selection& selection, const FailedNodes::ByNode& failed, std::vector<LoadRequest>& requests);
+
+  /// Indices of the nodes in the last list, ascending.
+  std::span<const std::uint32_t> drawn() const { return drawn_; }
 
  private:
   /// Keeps the most urgent nodes that fit the cache together, in `wanted_` by ascending index.
   std::uint32_t takeWhatFits(const Selection& selection);
-  void request(const SelectedNode& wanted, bool resident, const Attempts& attempts,
-               std::vector<LoadRequest>& requests) const;
+  LoadRequest requestFor(const SelectedNode& wanted) const;
 
   const Store& store_;
   const std::span<const std::uint32_t> parents_;
   NodeCache& cache_;
 
-  enum Mark : std::uint32_t { kDrawn = 0, kBlocked = 1 };
+  enum Mark : std::uint32_t { kDrawn, kBlocked, kMissing, kMarks };
   std::uint32_t pass_ = 0;
-  std::vector<std::uint32_t> marks_;  ///< by node: pass_ * 2 + Mark, of the pass that set it
+  std::vector<std::uint32_t> marks_;  ///< by node: pass_ * kMarks + Mark, of the pass that set it
   std::vector<SelectedNode> wanted_;
   std::vector<std::uint32_t> indices_;  ///< of wanted_
   std::vector<NodeCache::Data> found_;  ///< by position in wanted_
+  std::vector<std::uint32_t> drawn_;    ///< of the list
   std::uint64_t wantedBytes_ = 0;       ///< bound on the memory of all wanted_
 };
 

@@ -7,6 +7,7 @@ namespace {
 
 /// Ties go to the lower index, which in breadth-first order is the parent.
 bool lessUrgent(const LoadRequest& a, const LoadRequest& b) {
+  if (a.ahead != b.ahead) return a.ahead;
   if (a.priority != b.priority) return a.priority < b.priority;
   return a.node > b.node;
 }
@@ -24,21 +25,61 @@ void LoadQueue::replace(std::vector<LoadRequest>& requests) {
 }
 
 LoadQueue::Iterator LoadQueue::mostUrgent() {
-  const auto free = std::find_if(requests_.rbegin(), requests_.rend(), [this](const LoadRequest& request) {
-    return std::find(inFlight_.begin(), inFlight_.end(), request.node) == inFlight_.end();
-  });
+  const auto free = std::find_if(requests_.rbegin(), requests_.rend(),
+                                 [this](const LoadRequest& request) { return !isInFlight(request.node); });
   return free == requests_.rend() ? requests_.end() : std::prev(free.base());
 }
 
+bool LoadQueue::isInFlight(std::uint32_t node) const {
+  return std::find(inFlight_.begin(), inFlight_.end(), node) != inFlight_.end();
+}
+
+LoadRequest LoadQueue::take(Iterator request) {
+  const LoadRequest taken = *request;
+  requests_.erase(request);
+  inFlight_.push_back(taken.node);
+  return taken;
+}
+
 std::optional<LoadRequest> LoadQueue::pop(std::stop_token stop) {
+  std::vector<LoadRequest> one;
+  pop(stop, {}, one);
+  return one.empty() ? std::nullopt : std::optional(one.front());
+}
+
+void LoadQueue::pop(std::stop_token stop, const ReadLimits& limits, std::vector<LoadRequest>& out) {
+  out.clear();
   std::unique_lock lock(mutex_);
   Iterator found = requests_.end();
   changed_.wait(lock, stop, [&] { return stopped_ || (found = mostUrgent()) != requests_.end(); });
-  if (stopped_ || stop.stop_requested() || found == requests_.end()) return std::nullopt;
-  const LoadRequest request = *found;
-  requests_.erase(found);
-  inFlight_.push_back(request.node);
-  return request;
+  if (stopped_ || stop.stop_requested() || found == requests_.end()) return;
+  out.push_back(take(found));
+  const float least = out.front().priority * limits.leastPriority;
+  while (out.size() < limits.nodes && !out.front().alone) {
+    const Iterator next = nextTo(out.front(), out.back(), limits, least);
+    if (next == requests_.end()) break;
+    const bool before = next->offset < out.front().offset;
+    out.insert(before ? out.begin() : out.end(), take(next));
+  }
+}
+
+LoadQueue::Iterator LoadQueue::nextTo(const LoadRequest& first, const LoadRequest& last, const ReadLimits& limits,
+                                      float leastPriority) {
+  const std::uint64_t begin = first.offset, end = last.offset + last.bytes;
+  Iterator nearest = requests_.end();
+  std::uint64_t nearestGap = limits.gap;
+  for (Iterator request = requests_.begin(); request != requests_.end(); ++request) {
+    const std::uint64_t requestEnd = request->offset + request->bytes;
+    if (request->offset < end && requestEnd > begin) continue;
+    const std::uint64_t gap = request->offset >= end ? request->offset - end : begin - requestEnd;
+    const std::uint64_t whole = std::max(end, requestEnd) - std::min(begin, request->offset);
+    if (gap > nearestGap || static_cast<float>(gap) > limits.waste * static_cast<float>(request->bytes)) continue;
+    if (request->ahead != first.ahead || request->alone || request->priority < leastPriority) continue;
+    if (whole > limits.bytes || isInFlight(request->node)) continue;
+    nearest = request;
+    nearestGap = gap;
+  }
+  return nearest;
 }
 
 void LoadQueue::removeFromFlight(std::uint32_t node) {
@@ -58,6 +99,17 @@ void LoadQueue::release(std::uint32_t node) {
   {
     const std::lock_guard lock(mutex_);
     removeFromFlight(node);
+  }
+  changed_.notify_all();
+}
+
+void LoadQueue::putBack(const LoadRequest& request) {
+  {
+    const std::lock_guard lock(mutex_);
+    removeFromFlight(request.node);
+    const bool renewed = std::any_of(requests_.begin(), requests_.end(),
+                                     [&](const LoadRequest& other) { return other.node == request.node; });
+    if (!renewed) requests_.insert(std::lower_bound(requests_.begin(), requests_.end(), request, lessUrgent), request);
   }
   changed_.notify_all();
 }

@@ -9,7 +9,7 @@ NodeCache::NodeCache(std::uint64_t capacityBytes, std::span<const std::uint32_t>
     : capacityBytes_(capacityBytes), parents_(parents) {}
 
 NodeCache::Insertion NodeCache::insert(std::uint32_t node, Data data, std::vector<Data>& out) {
-  const std::uint64_t bytes = data->bytes();
+  const std::uint64_t bytes = data->memoryBytes();
   const std::lock_guard lock(mutex_);
   Entry* const present = find(node);
   if (present != nullptr && data->loadedPlanes() <= present->data->loadedPlanes()) {

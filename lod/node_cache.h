@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/node_data.h"
+#include "lod/occluders.h"
 
 namespace strata {
 
@@ -32,12 +32,12 @@ struct NodeCacheStats {
 /// Every member may be called by any thread; none does I/O or frees node memory under the lock.
 class NodeCache {
  public:
-  using Data = std::shared_ptr<const NodeData>;
+  using Data = std::shared_ptr<const StreamedNode>;
 
   /// A hold on one node's data, taken by pin() and given back by unpin().
   struct Pin {
     std::uint32_t node = 0;
-    const NodeData* data = nullptr;
+    const StreamedNode* data = nullptr;
   };
 
   enum class Insertion : std::uint8_t { inserted, replaced, refused, duplicate };
@@ -56,7 +56,7 @@ class NodeCache {
   void unpin(std::span<const Pin> pins, std::vector<Data>& out);
 
   bool contains(std::uint32_t node) const { return loadedPlanes(node) > 0; }
-  /// NodeData::loadedPlanes() of the resident version, 0 when there is none.
+  /// StreamedNode::loadedPlanes() of the resident version, 0 when there is none.
   int loadedPlanes(std::uint32_t node) const;
   NodeCacheStats stats() const;
   std::uint64_t capacityBytes() const { return capacityBytes_; }

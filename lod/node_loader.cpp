@@ -18,12 +18,13 @@ std::uint64_t bytesAPoint(const StoreInfo& info) {
 }
 
 /// Gives back what a buffer holds from a larger node before.
-void shrink(NodeData& node) {
+void shrink(StreamedNode& node) {
   node.batches.shrink_to_fit();
   for (auto& plane : node.position) plane.shrink_to_fit();
   node.colour.shrink_to_fit();
   node.intensity.shrink_to_fit();
   node.classification.shrink_to_fit();
+  node.occluding.occluders.shrink_to_fit();
 }
 
 }  // namespace
@@ -38,22 +39,27 @@ std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
   const std::uint64_t points = record.pointCount;
   // Batches may be shorter than they could be; twice as many are allowed for, and a few for vectors that grow.
   const std::uint64_t batches = 8 + 2 * ((points + Batch::kMaxPoints - 1) / Batch::kMaxPoints);
-  return sizeof(NodeData) + batches * sizeof(Batch) + points * bytesAPoint(info);
+  const std::uint64_t occluders =
+      std::min<std::uint64_t>(OccluderSet::kMost, points / OccluderSet::kLeastPoints * OccluderSet::kMostACell);
+  return sizeof(StreamedNode) + batches * sizeof(Batch) + points * bytesAPoint(info) + occluders * sizeof(Occluder);
 }
 
-bool NodeLoader::load(std::uint32_t node, Precision precision, std::stop_token stop, NodeData& out) {
-  const NodeRecord& record = store_.hierarchy().nodes[node];
-  payload_.resize(drawBytes(record, precision));
-  const std::span<std::byte> bytes(payload_);
-  for (std::size_t done = 0; done < bytes.size();) {
-    if (stop.stop_requested()) return false;
-    const std::size_t part = std::min(kMaxReadBytes, bytes.size() - done);
-    store_.points().read(record.offset + done, bytes.subspan(done, part));
-    done += part;
-  }
-  decodeForDrawing(record, store_.info(), bytes, precision, out);
-  if (out.bytes() > nodeBytesBound(record, store_.info())) shrink(out);
-  return true;
+std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_token stop) {
+  offset_ = requests.front().offset;
+  const std::uint64_t size = requests.back().offset + requests.back().bytes - offset_;
+  bytes_ = reader_.read(offset_, static_cast<std::size_t>(size), stop);
+  return bytes_.size();
+}
+
+void NodeLoader::decode(const LoadRequest& request, bool withOccluders, StreamedNode& out) const {
+  const NodeRecord& record = store_->hierarchy().nodes[request.node];
+  const auto start = static_cast<std::size_t>(request.offset - offset_);
+  decodeForDrawing(record, store_->info(), bytes_.subspan(start, request.bytes), request.precision, out);
+  if (withOccluders)
+    findOccluders(out, nodeCube({record.key}, store_->info().rootCube()), record.childMask, out.occluding);
+  else
+    out.occluding.occluders.clear();
+  if (out.memoryBytes() > nodeBytesBound(record, store_->info())) shrink(out);
 }
 
 }  // namespace strata

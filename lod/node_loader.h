@@ -1,11 +1,15 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <stop_token>
-#include <vector>
+#include <utility>
 
-#include "core/node_data.h"
 #include "io/store.h"
+#include "lod/load_queue.h"
+#include "lod/node_reader.h"
+#include "lod/occluders.h"
 
 namespace strata {
 
@@ -15,23 +19,28 @@ Precision usefulPrecision(const NodeRecord& record, Precision wanted);
 /// The most bytes of memory a node takes when loaded by NodeLoader, at any precision.
 std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info);
 
-/// Reads and decodes nodes. One thread an object; keeps its buffer for the next node.
+/// Reads and decodes nodes. One loader thread uses it; it keeps its buffers for the next node.
 class NodeLoader {
  public:
-  /// Largest single read, so that a loader sees that it is to stop; above nearly all payloads, because each read of a
-  /// slow source costs its latency.
-  static constexpr std::size_t kMaxReadBytes = std::size_t{1} << 20;
+  /// Largest single read that brings more than one node: each read of a slow source costs its latency, and a stopped
+  /// loader may have to wait for one.
+  static constexpr std::uint64_t kMaxReadBytes = std::uint64_t{1} << 20;
 
-  /// `store` has to outlive the loader.
-  explicit NodeLoader(const Store& store) : store_(store) {}
+  explicit NodeLoader(std::shared_ptr<const Store> store) : store_(std::move(store)), reader_(store_) {}
 
-  /// Reads exactly drawBytes(record, precision) bytes and decodes them into `out`, using its memory again.
-  /// False when stopped half-way. Throws Error when the bytes cannot be read or are not those that were written.
-  bool load(std::uint32_t node, Precision precision, std::stop_token stop, NodeData& out);
+  /// Reads the bytes of all requests at once (by ascending offset, as LoadQueue::pop() gives them) and says how many
+  /// those were; 0 when stopped. Throws what the source threw.
+  std::uint64_t read(std::span<const LoadRequest> requests, std::stop_token stop);
+
+  /// Decodes one of the nodes that were read, using the memory of `out` again. Throws Error when its bytes are not
+  /// those that were written.
+  void decode(const LoadRequest& request, bool withOccluders, StreamedNode& out) const;
 
  private:
-  const Store& store_;
-  std::vector<std::byte> payload_;
+  const std::shared_ptr<const Store> store_;
+  NodeReader reader_;
+  std::span<const std::byte> bytes_;
+  std::uint64_t offset_ = 0;  ///< of bytes_ in points.bin
 };
 
 }  // namespace strata

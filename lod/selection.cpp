@@ -81,11 +81,13 @@ double shareWithin(std::span<const Selection::Candidate> nodes, std::uint64_t bu
 
 class Walk {
  public:
-  Walk(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const SelectionOptions& options)
-      : nodes_(hierarchy.nodes), reach_(reach), volume_(view), options_(options) {}
+  Walk(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const CoarseDepth* depth,
+       const SelectionOptions& options)
+      : nodes_(hierarchy.nodes), reach_(reach), volume_(view), depth_(depth), options_(options) {}
 
   /// The node as a candidate, if it is in view and its parents do not give all that is wanted there.
-  std::optional<Selection::Candidate> look(std::uint32_t node, double given, float parentPriority) const {
+  std::optional<Selection::Candidate> look(std::uint32_t node, double given, float parentPriority,
+                                           std::uint32_t& occluded) const {
     const NodeRecord& record = nodes_[node];
     const Contour contour = contourOf(record);
     const double reach = reach_.empty() ? 0.0 : static_cast<double>(reach_[node]);
@@ -111,6 +113,10 @@ class Walk {
     selected.precision = precisionFor(screen.extentPx / volume_.cosHalfDiagonal);
     selected.pointCount = pointsAt(candidate, 1.0);
     if (candidate.leaf && !isRoot && selected.pointCount == 0) return std::nullopt;
+    if (!isRoot && depth_ != nullptr && depth_->hides(contour, reach)) {
+      ++occluded;
+      return std::nullopt;
+    }
     return candidate;
   }
 
@@ -122,7 +128,8 @@ class Walk {
     if (children == 0 || first <= parent.selected.node || first + children > nodes_.size()) return;
     for (std::size_t child = first; child < first + children; ++child) {
       ++out.tested;
-      const auto candidate = look(static_cast<std::uint32_t>(child), parent.density(), parent.selected.priority);
+      const auto candidate =
+          look(static_cast<std::uint32_t>(child), parent.density(), parent.selected.priority, out.occluded);
       if (!candidate) continue;
       out.heap.push_back(*candidate);
       std::push_heap(out.heap.begin(), out.heap.end(), lessUrgent);
@@ -133,6 +140,7 @@ class Walk {
   const std::vector<NodeRecord>& nodes_;
   std::span<const float> reach_;
   ViewVolume volume_;
+  const CoarseDepth* depth_;
   const SelectionOptions& options_;
 };
 
@@ -167,13 +175,14 @@ double Selection::Candidate::density() const {
   return given + (areaPerPoint > 0.0 ? 1.0 / areaPerPoint : std::numeric_limits<double>::infinity());
 }
 
-void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
+void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const CoarseDepth* depth,
                  const SelectionOptions& options, Selection& out) {
   out.nodes.clear();
   out.heap.clear();
   out.taken.clear();
   out.pointCount = 0;
   out.tested = 0;
+  out.occluded = 0;
   out.budgetReached = false;
   out.pointsPerPixel = options.pointsPerPixel;
   const std::uint64_t budget = std::min(options.pointBudget, SelectionOptions::kMaxPointBudget);
@@ -183,9 +192,9 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
     return;
   }
 
-  const Walk walk(hierarchy, reach, view, options);
+  const Walk walk(hierarchy, reach, view, depth, options);
   out.tested = 1;
-  if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max())) out.heap.push_back(*root);
+  if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max(), out.occluded)) out.heap.push_back(*root);
   double highestShare = 1.0;
   std::uint64_t wanted = 0;
   std::size_t nextCheck = 0;
@@ -209,8 +218,13 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
   emit(wanted, budget, highestShare, out);
 }
 
+void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
+                 const SelectionOptions& options, Selection& out) {
+  selectNodes(hierarchy, reach, view, nullptr, options, out);
+}
+
 void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out) {
-  selectNodes(hierarchy, {}, view, options, out);
+  selectNodes(hierarchy, {}, view, nullptr, options, out);
 }
 
 }  // namespace strata

@@ -6,6 +6,7 @@
 #include "core/node_data.h"
 #include "core/view.h"
 #include "io/store.h"
+#include "lod/coarse_depth.h"
 
 namespace strata {
 
@@ -15,6 +16,8 @@ struct SelectionOptions {
   double minimumPixels = 1.0;              ///< nodes whose longest side is shorter than this are left to their parents
 
   static constexpr std::uint64_t kMaxPointBudget = 0xfffffffeu;  ///< point ids of a frame have 32 bits
+
+  OcclusionOptions occlusion;  ///< how the streamer fills the coarse depth
 
   bool operator==(const SelectionOptions&) const = default;
 };
@@ -31,6 +34,7 @@ struct Selection {
   std::vector<SelectedNode> nodes;  ///< most urgent first; parents before their children
   std::uint64_t pointCount = 0;     ///< sum over nodes
   std::uint32_t tested = 0;         ///< contours looked at
+  std::uint32_t occluded = 0;       ///< of these, left out because something hides them
   bool budgetReached = false;
   double pointsPerPixel = 0.0;  ///< as wanted, or what the budget leaves of it
 
@@ -62,7 +66,10 @@ struct Selection {
 /// thinner by the same share, instead of some nodes being drawn in full and their neighbours not at all. Pure; the same
 /// arguments give the same result on any machine with IEEE doubles. Never throws.
 ///
-/// `reach` is HierarchyIndex::reach, or empty for stores whose contours hold everything below them.
+/// `reach` is HierarchyIndex::reach, or empty for stores whose contours hold everything below them. `depth`, where
+/// there is one, is of the same view: what it hides is left out, and all below it.
+void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const CoarseDepth* depth,
+                 const SelectionOptions& options, Selection& out);
 void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
                  const SelectionOptions& options, Selection& out);
 void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out);

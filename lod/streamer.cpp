@@ -27,10 +27,13 @@ Streamer::Streamer(std::shared_ptr<const Store> store, const StreamerOptions& op
     : store_(std::move(store)),
       index_(indexHierarchy(store_->hierarchy())),
       buffers_(loaderCount(options) + kExtraBuffers),
+      together_(options.together),
+      lookAhead_(options.lookAhead),
       cache_(options.cacheBytes, index_.parent),
+      failed_(options.firstRetry),
       builder_(*store_, index_.parent, cache_) {
   newest_.selection = options.selection;
-  for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<NodeData>());
+  for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<StreamedNode>());
   for (std::size_t i = 0; i < loaderCount(options); ++i)
     loaders_.emplace_back([this](std::stop_token stop) { loaderLoop(stop); });
   lodThread_ = std::jthread([this](std::stop_token stop) { lodLoop(stop); });
@@ -44,11 +47,18 @@ Streamer::~Streamer() {
 
 // --- any thread
 
-void Streamer::setView(const View& view) {
+void Streamer::setView(const View& view) { setTask(view, std::nullopt); }
+
+void Streamer::setView(const View& view, const View& ahead) {
+  setTask(view, lookAhead_ ? std::optional(ahead) : std::nullopt);
+}
+
+void Streamer::setTask(const View& view, const std::optional<View>& ahead) {
   {
     const std::lock_guard lock(mutex_);
-    if (viewKnown_ && newest_.view == view) return;
+    if (viewKnown_ && newest_.view == view && newest_.ahead == ahead) return;
     newest_.view = view;
+    newest_.ahead = ahead;
     viewKnown_ = true;
     ++newest_.generation;
   }
@@ -70,9 +80,9 @@ bool Streamer::complete() const {
   return viewKnown_ && doneGeneration_ == newest_.generation && !donePending_;
 }
 
-View Streamer::newestView() const {
+Streamer::Task Streamer::newestTask() const {
   const std::lock_guard lock(mutex_);
-  return newest_.view;
+  return newest_;
 }
 
 void Streamer::nodesChanged() {
@@ -96,6 +106,10 @@ StreamerStats Streamer::stats() const {
   StreamerStats s;
   s.nodesLoaded = counters_.nodesLoaded.load(std::memory_order_relaxed);
   s.bytesRead = counters_.bytesRead.load(std::memory_order_relaxed);
+  s.reads = counters_.reads.load(std::memory_order_relaxed);
+  s.nodesAhead = counters_.nodesAhead.load(std::memory_order_relaxed);
+  s.occluded = static_cast<std::uint32_t>(counters_.occluded.load(std::memory_order_relaxed));
+  s.occluders = static_cast<std::uint32_t>(counters_.occluders.load(std::memory_order_relaxed));
   s.failures = failed_.failures();
   s.nodesGivenUp = failed_.givenUp();
   s.loadsDropped = counters_.loadsDropped.load(std::memory_order_relaxed);
@@ -125,9 +139,12 @@ void Streamer::lodLoop(std::stop_token stop) {
     Task task;
     {
       std::unique_lock lock(mutex_);
-      const bool woken = lodWake_.wait(
-          lock, stop, [&] { return viewKnown_ && (newest_.generation != lastGeneration || nodesChanged_); });
-      if (!woken || stop.stop_requested()) return;
+      const auto hasWork = [&] { return viewKnown_ && (newest_.generation != lastGeneration || nodesChanged_); };
+      if (retryAt_ == FailedNodes::Clock::time_point::max())
+        lodWake_.wait(lock, stop, hasWork);
+      else
+        lodWake_.wait_until(lock, stop, retryAt_, hasWork);  // then a failed node may be tried again
+      if (stop.stop_requested()) return;
       task = newest_;
       nodesChanged_ = false;
     }
@@ -136,14 +153,47 @@ void Streamer::lodLoop(std::stop_token stop) {
   }
 }
 
+const CoarseDepth* Streamer::fillCoarseDepth(const Task& task) {
+  const OcclusionOptions& options = task.selection.occlusion;
+  if (!options.enabled) return nullptr;
+  CoarseDepth& depth = *backDepth_;
+  depth.clear(task.view, options);
+  // Occluders are of the nodes drawn last and still resident, put where the new view sees them.
+  cache_.pin(builder_.drawn(), occluding_, occludingPins_);
+  std::erase(occluding_, nullptr);
+  const auto apparentSize = [&task](const NodeCache::Data& node) {
+    const OccluderSet& set = node->occluding;
+    return set.cellSide * set.cellSide / glm::dot(set.origin - task.view.eye, set.origin - task.view.eye);
+  };
+  std::sort(occluding_.begin(), occluding_.end(),
+            [&](const NodeCache::Data& a, const NodeCache::Data& b) { return apparentSize(a) > apparentSize(b); });
+  for (const NodeCache::Data& node : occluding_) depth.add(node->occluding);
+  depth.finish();
+  occluding_.clear();  // before the pins, as in releaseList()
+  cache_.unpin(occludingPins_, lodReleased_);
+  occludingPins_.clear();
+  lodReleased_.clear();
+
+  counters_.occluders.store(depth.drawn(), std::memory_order_relaxed);
+  const std::lock_guard lock(depthMutex_);
+  std::swap(frontDepth_, backDepth_);
+  return frontDepth_.get();  // which only this thread changes
+}
+
 void Streamer::runPass(const Task& task, bool isNewView) {
   const auto start = std::chrono::steady_clock::now();
-  selectNodes(store_->hierarchy(), index_.reach, task.view, task.selection, selection_);
-  failed_.copyIfNewer(attempts_, attemptsVersion_);
-  const ListBuilder::Result built = builder_.build(selection_, attempts_, back_, requests_);
+  const CoarseDepth* const depth = fillCoarseDepth(task);
+  selectNodes(store_->hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
+  counters_.occluded.store(selection_.occluded, std::memory_order_relaxed);
+  failed_.copyIfNewer(failures_, failuresVersion_);
+  const ListBuilder::Result built = builder_.build(selection_, failures_, back_, requests_);
   back_.list.view = task.view;
   back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
-  const bool pending = !requests_.empty();
+  const bool pending = !requests_.empty() || built.waiting > 0;
+  if (task.ahead) {
+    selectNodes(store_->hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
+    builder_.lookAhead(selectionAhead_, failures_, requests_);
+  }
   queue_.replace(requests_);
   publish(back_);
 
@@ -161,6 +211,7 @@ void Streamer::runPass(const Task& task, bool isNewView) {
     const std::lock_guard lock(mutex_);
     doneGeneration_ = task.generation;
     donePending_ = pending;
+    retryAt_ = built.retryAt;
   }
   somethingHappened();
 }
@@ -185,33 +236,78 @@ void Streamer::releaseList(PinnedList& list, std::vector<NodeCache::Data>& out) 
 // --- loader threads
 
 void Streamer::loaderLoop(std::stop_token stop) {
-  NodeLoader loader(*store_);
-  while (std::unique_ptr<NodeData> buffer = transfer_.takeEmpty(stop)) {
+  NodeLoader loader(store_);
+  std::vector<LoadRequest> requests;
+  while (std::unique_ptr<StreamedNode> buffer = transfer_.takeEmpty(stop)) {
     while (buffer != nullptr) {
-      const std::optional<LoadRequest> request = queue_.pop(stop);
-      if (!request || !loadOne(loader, *request, stop, buffer)) return;
+      ReadLimits limits = together_;
+      limits.nodes = 1 + transfer_.emptyBuffers();
+      queue_.pop(stop, limits, requests);
+      if (requests.empty()) return;
+      keepWanted(requests);
+      if (!requests.empty() && !loadTogether(loader, requests, stop, buffer)) return;
     }
   }
 }
 
-/// Leaves the buffer where it is when the node did not come to fill it. False when stopped.
-bool Streamer::loadOne(NodeLoader& loader, const LoadRequest& request, std::stop_token stop,
-                       std::unique_ptr<NodeData>& buffer) {
-  const NodeRecord& record = store_->hierarchy().nodes[request.node];
-  if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision) || failed_.outOfTries(request.node)) {
-    queue_.finish(request.node);  // came, or failed for good, between the LOD pass's look and its new queue
-    return true;
-  }
+/// Repeats the LOD pass's tests for the newest view (Kanzok 2015, 3.2.3).
+bool Streamer::stillWanted(const LoadRequest& request) {
+  const Task task = newestTask();
+  const Contour contour = contourOf(store_->hierarchy().nodes[request.node]);
   const double reach = static_cast<double>(index_.reach[request.node]);
-  if (!contourInView(contourOf(record), reach, ViewVolume(newestView()))) {
+  if (request.ahead && task.ahead && contourInView(contour, reach, ViewVolume(*task.ahead))) return true;
+  if (!contourInView(contour, reach, ViewVolume(task.view))) return false;
+  if (request.node == 0 || !task.selection.occlusion.enabled) return true;
+  const std::lock_guard lock(depthMutex_);
+  return !(frontDepth_->view() == task.view && frontDepth_->hides(contour, reach));
+}
+
+void Streamer::keepWanted(std::vector<LoadRequest>& requests) {
+  std::erase_if(requests, [this](const LoadRequest& request) {
+    if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision) || failed_.mustWait(request.node)) {
+      queue_.finish(request.node);  // came or failed between the LOD pass's look and its new queue
+      return true;
+    }
+    if (stillWanted(request)) return false;
     counters_.loadsDropped.fetch_add(1, std::memory_order_relaxed);
     queue_.release(request.node);
     return true;
-  }
+  });
+}
+
+/// Leaves the buffer where it is when no node came to fill it. False when stopped.
+bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop,
+                            std::unique_ptr<StreamedNode>& buffer) {
   try {
-    if (!loader.load(request.node, request.precision, stop, *buffer)) return false;
+    const std::uint64_t bytes = loader.read(requests, stop);
+    if (bytes == 0) return false;
+    counters_.bytesRead.fetch_add(bytes, std::memory_order_relaxed);
+    counters_.reads.fetch_add(1, std::memory_order_relaxed);
+  } catch (const std::exception& error) {
+    for (const LoadRequest& request : requests) {
+      failed_.add(request.node, error.what());
+      queue_.finish(request.node);
+    }
+    nodesChanged();
+    somethingHappened();
+    return true;
+  }
+  for (const LoadRequest& request : requests) {
+    if (stop.stop_requested()) return false;
+    if (buffer == nullptr) buffer = transfer_.tryTakeEmpty();
+    if (buffer == nullptr)
+      queue_.putBack(request);  // another loader was quicker to take the buffer
+    else
+      finishLoad(loader, request, buffer);
+  }
+  return true;
+}
+
+void Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer) {
+  try {
+    loader.decode(request, newestTask().selection.occlusion.enabled, *buffer);
     counters_.nodesLoaded.fetch_add(1, std::memory_order_relaxed);
-    counters_.bytesRead.fetch_add(record.drawBytes[static_cast<int>(request.precision) - 1], std::memory_order_relaxed);
+    if (request.ahead) counters_.nodesAhead.fetch_add(1, std::memory_order_relaxed);
     transfer_.giveFilled({request.node, std::move(buffer)});
   } catch (const std::exception& error) {
     failed_.add(request.node, error.what());
@@ -219,7 +315,6 @@ bool Streamer::loadOne(NodeLoader& loader, const LoadRequest& request, std::stop
     nodesChanged();
   }
   somethingHappened();
-  return true;
 }
 
 // --- render thread
@@ -251,7 +346,7 @@ void Streamer::takeLoadedNodes() {
   }
   recycle();
   for (std::size_t i = 0; i < loaded_.size(); ++i) {
-    if (spare_.empty()) spare_.push_back(std::make_unique<NodeData>());
+    if (spare_.empty()) spare_.push_back(std::make_unique<StreamedNode>());
     transfer_.giveEmpty(std::move(spare_.back()));
     spare_.pop_back();
   }
@@ -260,10 +355,10 @@ void Streamer::takeLoadedNodes() {
 
 void Streamer::recycle() {
   for (NodeCache::Data& data : released_) {
-    // The nodes were made as NodeData, see takeLoadedNodes(). A new object around the old vectors: who still has a
+    // The nodes were made as such, see takeLoadedNodes(). A new object around the old vectors: who still has a
     // weak_ptr to the evicted node must not see another node's points.
     if (data.use_count() == 1 && spare_.size() < buffers_)
-      spare_.push_back(std::make_unique<NodeData>(std::move(const_cast<NodeData&>(*data))));
+      spare_.push_back(std::make_unique<StreamedNode>(std::move(const_cast<StreamedNode&>(*data))));
   }
   released_.clear();
 }

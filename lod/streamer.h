@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "core/render_list.h"
 #include "core/view.h"
 #include "io/store.h"
+#include "lod/coarse_depth.h"
 #include "lod/failed_nodes.h"
 #include "lod/hierarchy_index.h"
 #include "lod/list_builder.h"
@@ -25,10 +28,12 @@
 //   1. setView()                 any thread     a new view wakes the LOD thread
 //   2. Streamer::runPass()       LOD thread     selectNodes() wants the node, NodeCache::pin() does not find it,
 //                                               LoadQueue::replace() makes it a request
-//   3. Streamer::loaderLoop()    loader thread  TransferQueues::takeEmpty() gives memory, LoadQueue::pop() the request;
-//                                               out of the newest view: forgotten (loadsDropped)
-//   4. NodeLoader::load()        loader thread  reads and decodes; TransferQueues::giveFilled(), or FailedNodes::add()
-//                                               (failures, after FailedNodes::kMaxAttempts nodesGivenUp)
+//   3. Streamer::loaderLoop()    loader thread  TransferQueues::takeEmpty() gives memory, LoadQueue::pop() the request
+//                                               and its neighbours in the file; out of the newest view or hidden in it:
+//                                               forgotten (loadsDropped)
+//   4. NodeLoader                loader thread  read() and decode(); TransferQueues::giveFilled(), or
+//   FailedNodes::add()
+//                                               (failures; tried again later, after kMaxAttempts nodesGivenUp)
 //   5. beginFrame()              render thread  NodeCache::insert() (or refusals, duplicates), memory of evicted nodes
 //                                               goes back as empty buffers, the LOD thread wakes
 //   6. Streamer::runPass()       LOD thread     finds it, pins it, publishes a list with it; the next beginFrame()
@@ -40,15 +45,22 @@ struct StreamerOptions {
   SelectionOptions selection;
   std::uint64_t cacheBytes = std::uint64_t{1} << 30;  ///< cap on decoded nodes; buffers on their way are beside it
   int loaderThreads = 1;                              ///< at least 1
+  bool lookAhead = true;                              ///< load for the view that setView() says is to come
+  ReadLimits together;                                ///< what is read at once; `nodes` is as many as there are buffers
+  std::chrono::milliseconds firstRetry{250};          ///< after a node has failed to load; each further wait is longer
 };
 
 /// Counts since construction, except where it says otherwise.
 struct StreamerStats {
   std::uint64_t nodesLoaded = 0;   ///< read and decoded
-  std::uint64_t bytesRead = 0;     ///< of those
+  std::uint64_t bytesRead = 0;     ///< from the store
+  std::uint64_t reads = 0;         ///< that these bytes came in
+  std::uint64_t nodesAhead = 0;    ///< of nodesLoaded, those for a view to come
   std::uint64_t failures = 0;      ///< loads that ended in an error
   std::uint64_t nodesGivenUp = 0;  ///< nodes out of tries
   std::uint64_t loadsDropped = 0;  ///< taken by a loader, but no longer in view
+  std::uint32_t occluded = 0;      ///< nodes that the last pass left out, and all below them, as hidden
+  std::uint32_t occluders = 0;     ///< pieces of surface behind which the last pass looked for them
   std::uint64_t cacheHits = 0;     ///< nodes wanted by a new view and resident
   std::uint64_t cacheMisses = 0;   ///< nodes wanted by a new view and not resident
   std::uint64_t evictions = 0;
@@ -72,13 +84,17 @@ struct StreamerStats {
 class Streamer {
  public:
   Streamer(std::shared_ptr<const Store> store, const StreamerOptions& options);
-  /// Waits for at most one read of NodeLoader::kMaxReadBytes and one decoding a loader, and for one LOD pass.
+  /// Waits for at most one decoding a loader, one LOD pass, and NodeReader::kPatience for reads; never for a read that
+  /// takes longer.
   ~Streamer();
   Streamer(const Streamer&) = delete;
   Streamer& operator=(const Streamer&) = delete;
 
   /// Any thread. Does nothing when the view is the same as before.
   void setView(const View& view);
+  /// The same, and where the camera will be in about half a second: what is missing there is loaded after everything
+  /// that is missing here.
+  void setView(const View& view, const View& ahead);
   void setSelection(const SelectionOptions& selection);
 
   /// Render thread, once a frame: puts loaded nodes into the cache, hands out empty buffers and swaps in the newest
@@ -101,26 +117,35 @@ class Streamer {
   /// What an LOD pass works on.
   struct Task {
     View view;
+    std::optional<View> ahead;
     SelectionOptions selection;
     std::uint64_t generation = 0;  ///< counts setView() and setSelection()
   };
 
   void lodLoop(std::stop_token stop);
   void runPass(const Task& task, bool isNewView);
+  const CoarseDepth* fillCoarseDepth(const Task& task);
   void publish(PinnedList& list);
   void loaderLoop(std::stop_token stop);
-  bool loadOne(NodeLoader& loader, const LoadRequest& request, std::stop_token stop, std::unique_ptr<NodeData>& buffer);
+  bool stillWanted(const LoadRequest& request);
+  void keepWanted(std::vector<LoadRequest>& requests);
+  bool loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop,
+                    std::unique_ptr<StreamedNode>& buffer);
+  void finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer);
   void releaseList(PinnedList& list, std::vector<NodeCache::Data>& out);
   void takeLoadedNodes();
   void recycle();
   void nodesChanged();
   void somethingHappened();
-  View newestView() const;
+  Task newestTask() const;
+  void setTask(const View& view, const std::optional<View>& ahead);
 
   // Constant after construction.
   const std::shared_ptr<const Store> store_;
   const HierarchyIndex index_;
   const std::size_t buffers_;  ///< in circulation between render thread and loaders
+  const ReadLimits together_;
+  const bool lookAhead_;
 
   // Each with its own lock, see there.
   NodeCache cache_;
@@ -133,24 +158,33 @@ class Streamer {
   std::condition_variable_any lodWake_;
   std::condition_variable_any progress_;
   Task newest_;
-  bool viewKnown_ = false;            ///< setView() has been called
-  bool nodesChanged_ = false;         ///< loaded or failed since the last pass began
-  std::uint64_t doneGeneration_ = 0;  ///< of the last published list
-  bool donePending_ = false;          ///< requests were open after it
-  std::uint64_t events_ = 0;          ///< lists published and loads ended, for waitUntilComplete()
+  bool viewKnown_ = false;     ///< setView() has been called
+  bool nodesChanged_ = false;  ///< loaded or failed since the last pass began
+  FailedNodes::Clock::time_point retryAt_ = FailedNodes::Clock::time_point::max();  ///< when a pass is due by itself
+  std::uint64_t doneGeneration_ = 0;                                                ///< of the last published list
+  bool donePending_ = false;                                                        ///< requests were open after it
+  std::uint64_t events_ = 0;  ///< lists published and loads ended, for waitUntilComplete()
 
   // Guarded by listMutex_: the list on its way from the LOD thread to the render thread.
   std::mutex listMutex_;
   PinnedList ready_;
   bool readyIsNew_ = false;
 
+  // Guarded by depthMutex_: what hides what, for the loaders. The LOD thread fills the other one and swaps them.
+  std::mutex depthMutex_;
+  std::unique_ptr<CoarseDepth> frontDepth_ = std::make_unique<CoarseDepth>();
+
   // Used by the LOD thread.
   Selection selection_;
   ListBuilder builder_;
   PinnedList back_;
   std::vector<LoadRequest> requests_;
-  ListBuilder::Attempts attempts_;
-  std::uint64_t attemptsVersion_ = 0;
+  Selection selectionAhead_;
+  FailedNodes::ByNode failures_;
+  std::uint64_t failuresVersion_ = 0;
+  std::unique_ptr<CoarseDepth> backDepth_ = std::make_unique<CoarseDepth>();
+  std::vector<NodeCache::Data> occluding_;
+  std::vector<NodeCache::Pin> occludingPins_;
   std::vector<NodeCache::Data> lodReleased_;
 
   // Used by the render thread.
@@ -158,12 +192,12 @@ class Streamer {
   PinnedList old_;  ///< empty but for its memory
   std::vector<LoadedNode> loaded_;
   std::vector<NodeCache::Data> released_;
-  std::vector<std::unique_ptr<NodeData>> spare_;
+  std::vector<std::unique_ptr<StreamedNode>> spare_;
 
   // Counters, relaxed: each is read by itself.
   struct Counters {
-    std::atomic<std::uint64_t> nodesLoaded{0}, bytesRead{0}, loadsDropped{0}, cacheHits{0}, cacheMisses{0},
-        overCapacity{0}, lodPasses{0}, lodNs{0}, lodNsTotal{0};
+    std::atomic<std::uint64_t> nodesLoaded{0}, nodesAhead{0}, bytesRead{0}, reads{0}, loadsDropped{0}, occluded{0},
+        occluders{0}, cacheHits{0}, cacheMisses{0}, overCapacity{0}, lodPasses{0}, lodNs{0}, lodNsTotal{0};
   };
   Counters counters_;
 

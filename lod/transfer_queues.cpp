@@ -5,7 +5,7 @@
 
 namespace strata {
 
-void TransferQueues::giveEmpty(std::unique_ptr<NodeData> buffer) {
+void TransferQueues::giveEmpty(std::unique_ptr<StreamedNode> buffer) {
   {
     const std::lock_guard lock(mutex_);
     empty_.push_back(std::move(buffer));
@@ -13,10 +13,23 @@ void TransferQueues::giveEmpty(std::unique_ptr<NodeData> buffer) {
   emptyGiven_.notify_one();
 }
 
-std::unique_ptr<NodeData> TransferQueues::takeEmpty(std::stop_token stop) {
+std::unique_ptr<StreamedNode> TransferQueues::takeEmpty(std::stop_token stop) {
   std::unique_lock lock(mutex_);
   if (!emptyGiven_.wait(lock, stop, [this] { return !empty_.empty(); })) return nullptr;
-  std::unique_ptr<NodeData> buffer = std::move(empty_.back());
+  std::unique_ptr<StreamedNode> buffer = std::move(empty_.back());
+  empty_.pop_back();
+  return buffer;
+}
+
+std::size_t TransferQueues::emptyBuffers() const {
+  const std::lock_guard lock(mutex_);
+  return empty_.size();
+}
+
+std::unique_ptr<StreamedNode> TransferQueues::tryTakeEmpty() {
+  const std::lock_guard lock(mutex_);
+  if (empty_.empty()) return nullptr;
+  std::unique_ptr<StreamedNode> buffer = std::move(empty_.back());
   empty_.pop_back();
   return buffer;
 }

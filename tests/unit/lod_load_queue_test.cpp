@@ -77,6 +77,57 @@ TEST(LoadQueue, WakesAWaitingLoaderForANewListAndForAReleasedNode) {
   EXPECT_EQ(taken, (std::vector<std::uint32_t>{4, 4}));
 }
 
+LoadRequest placed(std::uint32_t node, float priority, std::uint64_t offset, std::uint32_t bytes = 100) {
+  LoadRequest r = request(node, priority);
+  r.offset = offset;
+  r.bytes = bytes;
+  return r;
+}
+
+std::vector<std::uint32_t> popTogether(LoadQueue& queue, const ReadLimits& limits) {
+  std::vector<LoadRequest> out;
+  queue.pop({}, limits, out);
+  std::vector<std::uint32_t> nodes;
+  for (const LoadRequest& r : out) nodes.push_back(r.node);
+  return nodes;
+}
+
+TEST(LoadQueue, GivesNeighboursInTheFileTogetherByOffset) {
+  LoadQueue queue;
+  fill(queue, {placed(1, 9.0f, 200), placed(2, 8.0f, 100), placed(3, 7.0f, 310), placed(4, 6.0f, 500)});
+  EXPECT_EQ(popTogether(queue, {.nodes = 8, .gap = 10}), (std::vector<std::uint32_t>{2, 1, 3}));
+  EXPECT_EQ(popTogether(queue, {.nodes = 8, .gap = 10}), (std::vector<std::uint32_t>{4}));
+}
+
+TEST(LoadQueue, JoinsNeitherTheLessUrgentNorTheFarNorTooMany) {
+  const std::vector<LoadRequest> requests = {placed(1, 9.0f, 0), placed(2, 8.0f, 100), placed(3, 7.0f, 200)};
+  for (const auto& [limits, expected] :
+       std::vector<std::pair<ReadLimits, std::size_t>>{{{.nodes = 1}, 1},
+                                                       {{.nodes = 2}, 2},
+                                                       {{.nodes = 8}, 3},
+                                                       {{.nodes = 8, .bytes = 200}, 2},
+                                                       {{.nodes = 8, .leastPriority = 0.85f}, 2},
+                                                       {{.nodes = 8, .bytes = 0}, 1}}) {
+    LoadQueue queue;
+    fill(queue, requests);
+    EXPECT_EQ(popTogether(queue, limits).size(), expected);
+  }
+  LoadQueue queue;
+  std::vector<LoadRequest> alone = requests;
+  alone[1].alone = true;
+  fill(queue, alone);
+  EXPECT_EQ(popTogether(queue, {.nodes = 8, .gap = 0}), (std::vector<std::uint32_t>{1}));
+}
+
+TEST(LoadQueue, GivesWhatIsAheadAfterEverythingElse) {
+  LoadQueue queue;
+  LoadRequest ahead = request(1, 1e9f);
+  ahead.ahead = true;
+  fill(queue, {ahead, request(2, 1.0f)});
+  EXPECT_EQ(queue.pop({})->node, 2u);
+  EXPECT_EQ(queue.pop({})->node, 1u);
+}
+
 TEST(LoadQueue, StopsAllThatWaitAndAllThatComeLater) {
   LoadQueue queue;
   std::jthread waiting([&] { EXPECT_FALSE(queue.pop({}).has_value()); });

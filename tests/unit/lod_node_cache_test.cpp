@@ -12,13 +12,13 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint32_t kPoints = 1000;
 
-std::shared_ptr<const NodeData> makeNode(std::uint32_t points = kPoints, int planes = 1) {
-  auto node = std::make_shared<NodeData>();
+std::shared_ptr<const StreamedNode> makeNode(std::uint32_t points = kPoints, int planes = 1) {
+  auto node = std::make_shared<StreamedNode>();
   for (int p = 0; p < planes; ++p) node->position[p].resize(points);
   return node;
 }
 
-const std::uint64_t kBytes = makeNode()->bytes();
+const std::uint64_t kBytes = makeNode()->memoryBytes();
 
 /// A cache over a small tree: 0 is the root, 1 and 2 its children, 3 and 4 children of 1, 5 and 6 of 2.
 class NodeCacheTest : public testing::Test {
@@ -167,7 +167,7 @@ TEST_F(NodeCacheTest, ARicherVersionReplacesAPoorerOne) {
   EXPECT_EQ(add(cache, 0, 2), Insertion::replaced);
   EXPECT_EQ(add(cache, 0, 2), Insertion::duplicate);
   EXPECT_EQ(add(cache, 0, 1), Insertion::duplicate);
-  EXPECT_EQ(cache.stats().residentBytes, makeNode(kPoints, 2)->bytes());
+  EXPECT_EQ(cache.stats().residentBytes, makeNode(kPoints, 2)->memoryBytes());
   EXPECT_EQ(cache.stats().residentNodes, 1u);
   EXPECT_EQ(cache.stats().duplicates, 2u);
 }
@@ -177,9 +177,9 @@ TEST_F(NodeCacheTest, AReplacedVersionThatIsDrawnIsCountedUntilItIsLetGo) {
   add(cache, 0, 1);
   const auto pins = pin(cache, {0});
   add(cache, 0, 2);
-  EXPECT_EQ(cache.stats().residentBytes, kBytes + makeNode(kPoints, 2)->bytes());
+  EXPECT_EQ(cache.stats().residentBytes, kBytes + makeNode(kPoints, 2)->memoryBytes());
   unpin(cache, pins);
-  EXPECT_EQ(cache.stats().residentBytes, makeNode(kPoints, 2)->bytes());
+  EXPECT_EQ(cache.stats().residentBytes, makeNode(kPoints, 2)->memoryBytes());
   EXPECT_EQ(cache.stats().pinnedBytes, 0u);
 }
 
@@ -198,7 +198,7 @@ class Model {
       : capacity_(capacity), parents_(std::move(parents)) {}
 
   struct Entry {
-    const NodeData* data;
+    const StreamedNode* data;
     std::uint64_t bytes;
     int planes;
     std::uint64_t order;
@@ -212,7 +212,7 @@ class Model {
     return true;
   }
 
-  Insertion insert(std::uint32_t node, const NodeData* data, std::uint64_t bytes, int planes) {
+  Insertion insert(std::uint32_t node, const StreamedNode* data, std::uint64_t bytes, int planes) {
     const auto present = entries.find(node);
     if (present != entries.end() && planes <= present->second.planes) return Insertion::duplicate;
     Model trial = *this;
@@ -248,7 +248,7 @@ class Model {
   }
 
   std::map<std::uint32_t, Entry> entries;
-  std::map<const NodeData*, std::pair<std::uint64_t, int>> retired;
+  std::map<const StreamedNode*, std::pair<std::uint64_t, int>> retired;
   std::uint64_t clock = 0;
 
  private:
@@ -273,7 +273,7 @@ TEST(NodeCacheModel, AgreesWithAPlainlyRightCacheOverRandomOperations) {
         const std::uint32_t node = random() % 85;
         const int planes = 1 + static_cast<int>(random() % 3);
         const auto data = makeNode(kPoints / 2 + random() % kPoints, planes);
-        ASSERT_EQ(cache.insert(node, data, out), model.insert(node, data.get(), data->bytes(), planes));
+        ASSERT_EQ(cache.insert(node, data, out), model.insert(node, data.get(), data->memoryBytes(), planes));
       } else if (what < 8 && lists.size() < 3) {
         std::set<std::uint32_t> nodes;
         for (int i = 0; i < 6; ++i)
