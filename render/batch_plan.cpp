@@ -10,8 +10,6 @@
 namespace strata {
 namespace {
 
-constexpr double kPixelsAt10Bits = 500.0;
-constexpr double kPixelsAt20Bits = 500.0 * 1024.0;
 constexpr double kSurePx = 0.05;  ///< more than float arithmetic moves a point
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }

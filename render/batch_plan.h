@@ -58,6 +58,8 @@ bool gazeKeeps(const ViewConstants& constants, const Gaze& gaze, const NodeData&
 /// steps, because its 1024th part is what a 10-bit coordinate resolves.
 double projectedSizePx(const ViewConstants& constants, const NodeData& node, const Batch& batch);
 
+inline constexpr double kPixelsAt10Bits = 500.0;
+inline constexpr double kPixelsAt20Bits = 500.0 * 1024.0;
 /// Schütz 2022, 3.3: 10 bits below 500 pixels, 20 below 500 * 1024, else 30; half a cell is then less than a quarter
 /// of a pixel. Never more planes than the node has, nor than the batch's bits fill.
 Precision batchPrecision(const ViewConstants& constants, const NodeData& node, const Batch& batch);

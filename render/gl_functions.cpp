@@ -26,6 +26,16 @@ GlFunctions loadGlFunctions(GlContext& context) {
   return functions;
 }
 
+bool hasExtension(const GlFunctions& functions, std::string_view name) {
+  int count = 0;
+  functions.GetIntegerv(gl::kExtensionCount, &count);
+  for (int i = 0; i < count; ++i) {
+    const unsigned char* text = functions.GetStringi(gl::kExtensions, static_cast<unsigned>(i));
+    if (text != nullptr && name == reinterpret_cast<const char*>(text)) return true;
+  }
+  return false;
+}
+
 std::string glRenderer(const GlFunctions& functions) {
   const unsigned char* text = functions.GetString(gl::kRenderer);
   return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);

@@ -1,5 +1,7 @@
 #pragma once
 #include <cstddef>
+#include <string>
+#include <string_view>
 
 #include "render/gl_context.h"
 
@@ -29,18 +31,21 @@ namespace strata {
   X(void, DeleteBuffers, (int count, const unsigned* buffers))                                                   \
   X(void, DeleteFramebuffers, (int count, const unsigned* framebuffers))                                         \
   X(void, DeleteProgram, (unsigned program))                                                                     \
+  X(void, DeleteQueries, (int count, const unsigned* queries))                                                   \
   X(void, DeleteRenderbuffers, (int count, const unsigned* renderbuffers))                                       \
   X(void, DeleteShader, (unsigned shader))                                                                       \
   X(void, DeleteVertexArrays, (int count, const unsigned* arrays))                                               \
   X(void, DepthFunc, (unsigned function))                                                                        \
   X(void, Disable, (unsigned capability))                                                                        \
   X(void, DispatchCompute, (unsigned x, unsigned y, unsigned z))                                                 \
+  X(void, DispatchComputeIndirect, (std::ptrdiff_t offset))                                                      \
   X(void, Enable, (unsigned capability))                                                                         \
   X(void, EnableVertexAttribArray, (unsigned index))                                                             \
   X(void, Finish, ())                                                                                            \
   X(void, FramebufferRenderbuffer, (unsigned target, unsigned attachment, unsigned kind, unsigned renderbuffer)) \
   X(void, GenBuffers, (int count, unsigned* buffers))                                                            \
   X(void, GenFramebuffers, (int count, unsigned* framebuffers))                                                  \
+  X(void, GenQueries, (int count, unsigned* queries))                                                            \
   X(void, GenRenderbuffers, (int count, unsigned* renderbuffers))                                                \
   X(void, GenVertexArrays, (int count, unsigned* arrays))                                                        \
   X(void, GetBufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, void* data))           \
@@ -49,22 +54,30 @@ namespace strata {
   X(void, GetIntegerv, (unsigned name, int* value))                                                              \
   X(void, GetProgramInfoLog, (unsigned program, int capacity, int* length, char* text))                          \
   X(void, GetProgramiv, (unsigned program, unsigned name, int* value))                                           \
+  X(void, GetQueryObjectui64v, (unsigned query, unsigned name, unsigned long long* value))                       \
   X(void, GetShaderInfoLog, (unsigned shader, int capacity, int* length, char* text))                            \
   X(void, GetShaderiv, (unsigned shader, unsigned name, int* value))                                             \
+  X(const unsigned char*, GetStringi, (unsigned name, unsigned index))                                           \
   X(const unsigned char*, GetString, (unsigned name))                                                            \
   X(void, LinkProgram, (unsigned program))                                                                       \
   X(void, MemoryBarrier, (unsigned barriers))                                                                    \
   X(void, MultiDrawArraysIndirect, (unsigned mode, const void* commands, int count, int stride))                 \
   X(void, PixelStorei, (unsigned name, int value))                                                               \
+  X(void, QueryCounter, (unsigned query, unsigned target))                                                       \
   X(void, ReadBuffer, (unsigned source))                                                                         \
   X(void, ReadPixels, (int x, int y, int width, int height, unsigned format, unsigned type, void* data))         \
   X(void, RenderbufferStorage, (unsigned target, unsigned internalFormat, int width, int height))                \
   X(void, ShaderSource, (unsigned shader, int count, const char* const* texts, const int* lengths))              \
   X(void, Uniform1i, (int location, int x))                                                                      \
+  X(void, Uniform1uiv, (int location, int count, const unsigned* values))                                        \
   X(void, Uniform1ui, (int location, unsigned x))                                                                \
   X(void, Uniform2f, (int location, float x, float y))                                                           \
+  X(void, Uniform2fv, (int location, int count, const float* values))                                            \
   X(void, Uniform2i, (int location, int x, int y))                                                               \
+  X(void, Uniform3iv, (int location, int count, const int* values))                                              \
+  X(void, Uniform3ui, (int location, unsigned x, unsigned y, unsigned z))                                        \
   X(void, Uniform4f, (int location, float x, float y, float z, float w))                                         \
+  X(void, Uniform4fv, (int location, int count, const float* values))                                            \
   X(void, UseProgram, (unsigned program))                                                                        \
   X(void, VertexAttribDivisor, (unsigned index, unsigned divisor))                                               \
   X(void, VertexAttribIPointer, (unsigned index, int size, unsigned type, int stride, const void* offset))       \
@@ -88,6 +101,8 @@ inline constexpr unsigned kStencilTest = 0x0B90;
 inline constexpr unsigned kScissorTest = 0x0C11;
 inline constexpr unsigned kProgramPointSize = 0x8642;
 inline constexpr unsigned kPackAlignment = 0x0D05;
+inline constexpr unsigned kExtensions = 0x1F03;
+inline constexpr unsigned kExtensionCount = 0x821D;
 inline constexpr unsigned kMaxTextureSize = 0x0D33;
 inline constexpr unsigned kUnsignedInt = 0x1405;
 inline constexpr unsigned kFloat = 0x1406;
@@ -100,12 +115,17 @@ inline constexpr unsigned kZeroToOne = 0x935F;
 inline constexpr unsigned kNegativeOneToOne = 0x935E;
 inline constexpr unsigned kMajorVersion = 0x821B;
 inline constexpr unsigned kMinorVersion = 0x821C;
+inline constexpr unsigned kRg32Ui = 0x823C;
 inline constexpr unsigned kR32Ui = 0x8236;
+inline constexpr unsigned kRgInteger = 0x8228;
 inline constexpr unsigned kRedInteger = 0x8D94;
 inline constexpr unsigned kDepthComponent32F = 0x8CAC;
 inline constexpr unsigned kMaxRenderbufferSize = 0x84E8;
 inline constexpr unsigned kArrayBuffer = 0x8892;
 inline constexpr unsigned kDrawIndirectBuffer = 0x8F3F;
+inline constexpr unsigned kDispatchIndirectBuffer = 0x90EE;
+inline constexpr unsigned kTimestamp = 0x8E28;
+inline constexpr unsigned kQueryResult = 0x8866;
 inline constexpr unsigned kShaderStorageBuffer = 0x90D2;
 inline constexpr unsigned kMaxShaderStorageBlockSize = 0x90DE;
 inline constexpr unsigned kStreamDraw = 0x88E0;
@@ -122,12 +142,15 @@ inline constexpr unsigned kRenderbuffer = 0x8D41;
 inline constexpr unsigned kColourAttachment0 = 0x8CE0;
 inline constexpr unsigned kDepthAttachment = 0x8D00;
 inline constexpr unsigned kFramebufferComplete = 0x8CD5;
+inline constexpr unsigned kCommandBarrier = 0x0040;
 inline constexpr unsigned kBufferUpdateBarrier = 0x0200;
 inline constexpr unsigned kShaderStorageBarrier = 0x2000;
 }  // namespace gl
 
 /// Of the current context. Throws Error when it is older than OpenGL 4.3 or lacks a function.
 GlFunctions loadGlFunctions(GlContext& context);
+
+bool hasExtension(const GlFunctions& functions, std::string_view name);
 
 /// "llvmpipe (LLVM 15.0.6, 256 bits)".
 std::string glRenderer(const GlFunctions& functions);

@@ -20,8 +20,9 @@ std::string trimmed(std::string text) {
 }
 
 /// Throws Error unless it compiled.
-void compile(const GlFunctions& gl, unsigned shader, const std::vector<std::string_view>& files) {
-  std::string text = "#version 430 core\n";
+void compile(const GlFunctions& gl, unsigned shader, const ShaderStage& stage) {
+  const std::vector<std::string_view>& files = stage.files;
+  std::string text = "#version " + std::to_string(stage.version) + " core\n" + stage.preamble;
   for (std::size_t i = 0; i < files.size(); ++i) {
     text += "#line " + std::to_string(i * kLinesOfAFile + 1) + "\n";
     text += shaderText(files[i]);
@@ -68,6 +69,16 @@ void GlBuffer::fill(std::uint32_t word) {
   gl_.ClearBufferData(gl::kShaderStorageBuffer, gl::kR32Ui, gl::kRedInteger, gl::kUnsignedInt, &word);
 }
 
+void GlBuffer::fill(std::uint32_t lower, std::uint32_t upper) {
+  const std::uint32_t pair[2] = {lower, upper};
+  gl_.BindBuffer(gl::kShaderStorageBuffer, name_);
+  gl_.ClearBufferData(gl::kShaderStorageBuffer, gl::kRg32Ui, gl::kRgInteger, gl::kUnsignedInt, pair);
+}
+
+void GlBuffer::reserve(std::uint64_t bytes) {
+  if (bytes_ < bytes) assign(nullptr, bytes);
+}
+
 void GlBuffer::bindStorage(unsigned binding) const { gl_.BindBufferBase(gl::kShaderStorageBuffer, binding, name_); }
 
 GlProgram::GlProgram(const GlFunctions& functions, const std::vector<ShaderStage>& stages)
@@ -77,7 +88,7 @@ GlProgram::GlProgram(const GlFunctions& functions, const std::vector<ShaderStage
       const unsigned shader = gl_.CreateShader(stage.kind);
       gl_.AttachShader(name_, shader);
       gl_.DeleteShader(shader);  // lives as long as the program it is attached to
-      compile(gl_, shader, stage.files);
+      compile(gl_, shader, stage);
     }
     gl_.LinkProgram(name_);
     int linked = 0, length = 0;
@@ -95,6 +106,12 @@ GlProgram::GlProgram(const GlFunctions& functions, const std::vector<ShaderStage
 }
 
 GlProgram::~GlProgram() { gl_.DeleteProgram(name_); }
+
+std::uint64_t GlTimestamp::value() const {
+  unsigned long long nanoseconds = 0;
+  gl_.GetQueryObjectui64v(name_, gl::kQueryResult, &nanoseconds);
+  return nanoseconds;
+}
 
 std::string nameShaderFiles(const std::string& log, const std::vector<std::string_view>& files) {
   std::istringstream in(log);

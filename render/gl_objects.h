@@ -23,8 +23,12 @@ class GlBuffer {
   void assign(const void* data, std::uint64_t bytes);
   void write(std::uint64_t offset, const void* data, std::uint64_t bytes);
   void read(std::uint64_t offset, void* data, std::uint64_t bytes) const;
+  /// As many bytes at least, with any content.
+  void reserve(std::uint64_t bytes);
   /// Sets every 32-bit word.
   void fill(std::uint32_t word);
+  /// Sets every pair of 32-bit words, the lower one first.
+  void fill(std::uint32_t lower, std::uint32_t upper);
   void bindStorage(unsigned binding) const;
 
  private:
@@ -36,7 +40,9 @@ class GlBuffer {
 
 struct ShaderStage {
   unsigned kind;                        ///< gl::kComputeShader, ...
-  std::vector<std::string_view> files;  ///< names in render/shaders, compiled as one text after the version line
+  std::vector<std::string_view> files;  ///< names in render/shaders, compiled as one text after version and preamble
+  std::string preamble = "";            ///< whole lines: #extension, #define
+  int version = 430;                    ///< of GLSL
 };
 
 class GlProgram {
@@ -48,6 +54,23 @@ class GlProgram {
   GlProgram& operator=(const GlProgram&) = delete;
 
   void use() const { gl_.UseProgram(name_); }
+
+ private:
+  const GlFunctions& gl_;
+  unsigned name_ = 0;
+};
+
+/// When the GPU has done what was asked of it before, by its own clock.
+class GlTimestamp {
+ public:
+  explicit GlTimestamp(const GlFunctions& functions) : gl_(functions) { gl_.GenQueries(1, &name_); }
+  ~GlTimestamp() { gl_.DeleteQueries(1, &name_); }
+  GlTimestamp(const GlTimestamp&) = delete;
+  GlTimestamp& operator=(const GlTimestamp&) = delete;
+
+  void record() const { gl_.QueryCounter(name_, gl::kTimestamp); }
+  /// Of the last record(), nanoseconds; waits for it.
+  std::uint64_t value() const;
 
  private:
   const GlFunctions& gl_;

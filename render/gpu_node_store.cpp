@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include "core/log.h"
+#include "render/gpu_part.h"
+#include "render/point_colour.h"
+
 namespace strata {
 namespace {
 
@@ -15,11 +19,13 @@ std::uint64_t largestBlock(const GlFunctions& gl) {
 
 }  // namespace
 
-GpuNodeStore::GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame)
+GpuNodeStore::GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame,
+                           std::uint32_t groupSize)
     : gl_(functions),
       maxBytes_(gpuBytes),
       maxPageBytes_(std::min(kPageBytes, largestBlock(functions))),
-      uploadBytesPerFrame_(uploadBytesPerFrame) {}
+      uploadBytesPerFrame_(uploadBytesPerFrame),
+      groupSize_(groupSize) {}
 
 void GpuNodeStore::beginFrame(const RenderList& list) {
   ++frame_;
@@ -33,35 +39,84 @@ void GpuNodeStore::beginFrame(const RenderList& list) {
   }
 }
 
-std::optional<GpuNode> GpuNodeStore::require(const std::shared_ptr<const NodeData>& node) {
-  if (const auto found = index_.find(node.get()); found != index_.end()) return found->second->place;
+/// Counts what will be uploaded; the first upload of a frame always passes.
+bool GpuNodeStore::withinBudget(std::uint64_t bytes) {
+  return uploadedBytes_ == 0 || uploadedBytes_ + bytes <= uploadBytesPerFrame_;
+}
 
-  const std::uint64_t words = std::uint64_t{node->pointCount()} * static_cast<std::uint64_t>(node->loadedPlanes());
-  const std::uint64_t bytes = words * 4;
-  if (bytes == 0 || bytes > maxPageBytes_) return std::nullopt;
-  if (uploadedBytes_ > 0 && uploadedBytes_ + bytes > uploadBytesPerFrame_) return std::nullopt;
-  GpuNode place;
-  place.planeStride = node->pointCount();
-  if (!allocate(static_cast<std::uint32_t>(words), place)) return std::nullopt;
-
-  GlBuffer& buffer = pages_[place.page]->buffer;
-  for (int p = 0; p < node->loadedPlanes(); ++p) {
-    const std::uint64_t word = place.firstWord + std::uint64_t{place.planeStride} * static_cast<std::uint64_t>(p);
-    buffer.write(word * 4, node->position[p].data(), std::uint64_t{place.planeStride} * 4);
+const GpuNode* GpuNodeStore::require(const std::shared_ptr<const NodeData>& node, const NodeNeeds& needs) {
+  auto found = index_.find(node.get());
+  NodeNeeds all = needs;
+  if (found != index_.end()) {
+    Entry& entry = *found->second;
+    const bool room = (entry.classes || !needs.classes) && (entry.colours || !needs.colours);
+    if (room && needs.colours && entry.colourKey != needs.colourKey) {
+      const std::uint64_t bytes = std::uint64_t{node->pointCount()} * 4;
+      if (!withinBudget(bytes)) return nullptr;
+      for (const GpuPart& part : entry.place.parts) writeColours(*node, part, needs);
+      entry.colourKey = needs.colourKey;
+      uploadedBytes_ += bytes;
+    }
+    if (room) return &entry.place;
+    all.classes = all.classes || entry.classes;
   }
-  uploadedBytes_ += bytes;
-  entries_.push_back({node.get(), node, place, static_cast<std::uint32_t>(words), frame_});
+  std::uint64_t bytes = 0;
+  for (const GpuPart& part : splitNode(*node, all, std::min(kPartBytes, maxPageBytes_), groupSize_))
+    bytes += partWords(part, node->loadedPlanes(), all) * 4;
+  if (bytes == 0 || !withinBudget(bytes)) return nullptr;
+  if (found != index_.end()) erase(found->second);
+  const auto entry = upload(node, all);
+  return entry == entries_.end() ? nullptr : &entry->place;
+}
+
+GpuNodeStore::Entries::iterator GpuNodeStore::upload(const std::shared_ptr<const NodeData>& node,
+                                                     const NodeNeeds& needs) {
+  GpuNode place;
+  place.planes = node->loadedPlanes();
+  findGrid(*node, place);
+  std::vector<std::uint32_t> words;
+  for (GpuPart part : splitNode(*node, needs, std::min(kPartBytes, maxPageBytes_), groupSize_)) {
+    const auto length = static_cast<std::uint32_t>(partWords(part, place.planes, needs));
+    if (!allocate(length, part)) {
+      releaseParts(place, words);
+      return entries_.end();
+    }
+    layOut(part, part.firstBox, place.planes, needs);
+    place.parts.push_back(part);
+    words.push_back(length);
+  }
+  for (std::size_t i = 0; i < place.parts.size(); ++i) {
+    writePart(*node, place, place.parts[i], words[i], needs);
+    uploadedBytes_ += std::uint64_t{words[i]} * 4;
+  }
+  entries_.push_back(
+      {node.get(), node, std::move(place), std::move(words), needs.classes, needs.colours, needs.colourKey, frame_});
   index_[node.get()] = std::prev(entries_.end());
-  return place;
+  return std::prev(entries_.end());
+}
+
+void GpuNodeStore::writePart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t words,
+                             const NodeNeeds& needs) {
+  staging_.assign(words, 0);
+  fillPart(node, place, part, groupSize_, staging_);
+  pages_[part.page]->buffer.write(std::uint64_t{part.firstBox} * 4, staging_.data(), std::uint64_t{words} * 4);
+  if (needs.colours) writeColours(node, part, needs);
+}
+
+void GpuNodeStore::writeColours(const NodeData& node, const GpuPart& part, const NodeNeeds& needs) {
+  staging_.resize(part.pointCount);
+  pointColours(node, part.firstPoint, *needs.options, Precision::low10, staging_);
+  pages_[part.page]->buffer.write(std::uint64_t{part.firstColour} * 4, staging_.data(),
+                                  std::uint64_t{part.pointCount} * 4);
 }
 
 /// Evicts as long as that can help.
-bool GpuNodeStore::allocate(std::uint32_t words, GpuNode& place) {
+bool GpuNodeStore::allocate(std::uint32_t words, GpuPart& part) {
   for (;;) {
     for (std::uint32_t page = 0; page < pages_.size(); ++page) {
       if (const auto first = pages_[page]->allocator.allocate(words)) {
-        place.page = page;
-        place.firstWord = *first;
+        part.page = page;
+        part.firstBox = *first;
         return true;
       }
     }
@@ -71,22 +126,36 @@ bool GpuNodeStore::allocate(std::uint32_t words, GpuNode& place) {
   }
 }
 
-/// False where the cap or the driver allows no page that holds `words`.
+/// False where the cap or the driver allows no page that holds `words`. A driver that refuses a page is asked for
+/// smaller ones, then never again.
 bool GpuNodeStore::addPage(std::uint32_t words) {
-  const std::uint64_t bytes = std::min(maxPageBytes_, maxBytes_ - pageBytes_) / 4 * 4;
-  if (driverIsFull_ || bytes < std::uint64_t{words} * 4) return false;
-  for (int i = 0; i < kErrorFlags && gl_.GetError() != 0; ++i) {
+  std::uint64_t bytes = std::min(maxPageBytes_, maxBytes_ - pageBytes_) / 16 * 16;
+  const std::uint64_t least = std::uint64_t{words} * 4;
+  while (!driverIsFull_ && bytes >= least) {
+    for (int i = 0; i < kErrorFlags && gl_.GetError() != 0; ++i) {
+    }
+    auto page = std::make_unique<Page>(gl_, bytes);
+    if (gl_.GetError() == 0) {
+      pageBytes_ += bytes;
+      pages_.push_back(std::move(page));
+      return true;
+    }
+    bytes = bytes / 2 / 16 * 16;
+    if (bytes >= least) continue;
+    driverIsFull_ = true;
+    logWarning("OpenGL: out of GPU memory at " + std::to_string(pageBytes_ >> 20) + " MiB of points (expected up to " +
+               std::to_string(maxBytes_ >> 20) + " MiB); drawing with that");
   }
-  auto page = std::make_unique<Page>(gl_, bytes);
-  driverIsFull_ = gl_.GetError() != 0;
-  if (driverIsFull_) return false;
-  pageBytes_ += bytes;
-  pages_.push_back(std::move(page));
-  return true;
+  return false;
+}
+
+void GpuNodeStore::releaseParts(const GpuNode& place, const std::vector<std::uint32_t>& words) {
+  for (std::size_t i = 0; i < place.parts.size(); ++i)
+    pages_[place.parts[i].page]->allocator.release(place.parts[i].firstBox, words[i]);
 }
 
 GpuNodeStore::Entries::iterator GpuNodeStore::erase(Entries::iterator entry) {
-  pages_[entry->place.page]->allocator.release(entry->place.firstWord, entry->words);
+  releaseParts(entry->place, entry->words);
   index_.erase(entry->key);
   return entries_.erase(entry);
 }

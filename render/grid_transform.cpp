@@ -59,12 +59,18 @@ bool GridFinder::addTransform(const glm::dvec3& step, const glm::dvec3& rest) {
   return true;
 }
 
+std::optional<GridFinder::OnGrid> GridFinder::gridOf(const glm::dvec3& step, const glm::dvec3& corner) {
+  const Grid* grid = find(step, corner);
+  if (grid == nullptr) return std::nullopt;
+  return OnGrid{grid->index, glm::round((corner - grid->point) / grid->step) - grid->eyeCell};
+}
+
 std::optional<GridPlace> GridFinder::place(const NodeData& node, const Batch& batch, Precision precision) {
   const glm::dvec3 steps = glm::exp2(glm::dvec3(batch.bits));
   const glm::dvec3 corner = node.origin + batch.boxMin;
-  const Grid* grid = find(batch.boxSize / steps, corner);
-  if (grid == nullptr) return placeAlone(node, batch, precision);
-  const glm::dvec3 first = glm::round((corner - grid->point) / grid->step) - grid->eyeCell;
+  const std::optional<OnGrid> grid = gridOf(batch.boxSize / steps, corner);
+  if (!grid) return placeAlone(node, batch, precision);
+  const glm::dvec3& first = grid->first;
   GridPlace place;
   place.grid = grid->index;
   for (int axis = 0; axis < 3; ++axis) {

@@ -12,6 +12,12 @@ class GridFinder {
   GridFinder(const ViewConstants& constants, const Clip& clip, std::vector<GridTransform>& grids)
       : constants_(constants), clip_(clip), grids_(grids) {}
 
+  /// The grid of this step that `corner` is a point of, and that corner in steps from the eye's cell.
+  struct OnGrid {
+    std::uint32_t index;
+    glm::dvec3 first;
+  };
+  std::optional<OnGrid> gridOf(const glm::dvec3& step, const glm::dvec3& corner);
   /// Places a batch on the grid of its store, or on one of its own. Nothing where floats cannot hold its transform.
   std::optional<GridPlace> place(const NodeData& node, const Batch& batch, Precision precision);
 

@@ -81,14 +81,18 @@ class PointsRasterizer final : public Rasterizer {
   PointsRasterizer(std::unique_ptr<GlContext> context, const RasterizerOptions& options)
       : pool_(options.threads),
         scene_(std::move(context), options),
-        program_(scene_.gl(), {{gl::kVertexShader, {"shader_types.h", "batch.glsl", "points.vert"}},
-                               {gl::kFragmentShader, {"points.frag"}}}),
+        programs_(scene_.gl(), stages(false)),
+        counting_(scene_.gl(), stages(true)),
+        counts_(scene_.gl(), 0, gl::kDynamicCopy),
         commands_(scene_.gl(), 0, gl::kStreamDraw),
         recordNumbers_(scene_.gl(), 0, gl::kStaticDraw),
-        target_(scene_.gl()) {
+        target_(scene_.gl()),
+        begin_(scene_.gl()),
+        end_(scene_.gl()) {
     if (scene_.gl().ClipControl == nullptr)
       throw Error("OpenGL", "points needs glClipControl (OpenGL 4.5 or ARB_clip_control), found none");
     scene_.gl().GenVertexArrays(1, &vertexArray_);
+    programs_.get({});  // now, so that a driver that cannot is found out when the rasterizer is made
   }
 
   ~PointsRasterizer() override {
@@ -99,14 +103,16 @@ class PointsRasterizer final : public Rasterizer {
   DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) override {
     Stopwatch watch;
     scene_.makeCurrent();
-    DrawStats stats = scene_.prepare(list, view, options);
+    DrawStats stats = scene_.prepare(list, {&view, 1}, options, {});
     writeCommands();
     stats.uploadMs = watch.lapMs();
+    const bool counts = options.colour == ColourMode::overdraw;
     buffer_.width = std::max(view.width, 0);
     buffer_.height = std::max(view.height, 0);
     buffer_.pixels.assign(static_cast<std::size_t>(buffer_.width) * static_cast<std::size_t>(buffer_.height),
                           kEmptyPixel);
-    if (!buffer_.pixels.empty()) drawPoints();
+    buffer_.counts.assign(counts ? buffer_.pixels.size() : 0, 0);
+    if (!buffer_.pixels.empty()) drawPoints(counts, stats);
     stats.drawMs = watch.lapMs();
     resolveFrame(list, view, options, buffer_, pool_, frame);
     stats.resolveMs = watch.lapMs();
@@ -117,6 +123,12 @@ class PointsRasterizer final : public Rasterizer {
   std::string device() const override { return scene_.renderer(); }
 
  private:
+  static std::vector<ShaderStage> stages(bool count) {
+    const std::string defines = define("STRATA_COUNT", count ? "1" : "0");
+    return {{gl::kVertexShader, {"shader_types.h", "batch.glsl", "points.vert"}, defines},
+            {gl::kFragmentShader, {"shader_types.h", "points.frag"}, defines}};
+  }
+
   /// One draw for each record, which finds its record's number as an instanced attribute.
   void writeCommands() {
     const std::vector<shader::BatchRecord>& records = scene_.records();
@@ -129,24 +141,22 @@ class PointsRasterizer final : public Rasterizer {
     recordNumbers_.assign(numbers.data(), numbers.size() * sizeof(std::uint32_t));
   }
 
-  void drawPoints() {
-    const GlFunctions& gl = scene_.gl();
+  void drawPoints(bool counts, DrawStats& stats) {
     if (!target_.begin(buffer_.width, buffer_.height)) {
       if (!warned_) logWarning("points: " + scene_.renderer() + " has no framebuffer for so large an image");
       warned_ = true;
       return;
     }
-    setState();
-    for (const PageRun& run : scene_.runs()) {
-      scene_.bind(run);
-      const std::uintptr_t offset = run.firstRecord * sizeof(DrawCommand);
-      gl.MultiDrawArraysIndirect(gl::kPoints, reinterpret_cast<const void*>(offset), static_cast<int>(run.recordCount),
-                                 0);
-    }
+    begin_.record();
+    setState(programs_);
+    drawRuns();
     ids_.resize(buffer_.pixels.size());
     depths_.resize(buffer_.pixels.size());
+    end_.record();
     target_.read(ids_.data(), depths_.data());
+    if (counts) countPoints();
     resetState();
+    stats.gpuMs = static_cast<double>(end_.value() - begin_.value()) * 1e-6;
     pool_.parallelFor(ids_.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
       const float scale = std::ldexp(1.0f, kDepthExponent);
       for (std::size_t i = begin; i < end; ++i)
@@ -155,7 +165,30 @@ class PointsRasterizer final : public Rasterizer {
     });
   }
 
-  void setState() const {
+  void drawRuns() const {
+    for (const PageRun& run : scene_.runs()) {
+      scene_.bind(run);
+      const std::uintptr_t offset = run.firstRecord * sizeof(DrawCommand);
+      scene_.gl().MultiDrawArraysIndirect(gl::kPoints, reinterpret_cast<const void*>(offset),
+                                          static_cast<int>(run.recordCount), 0);
+    }
+  }
+
+  /// Every point again, with no depth test.
+  void countPoints() {
+    const std::uint64_t bytes = buffer_.counts.size() * sizeof(std::uint32_t);
+    counts_.reserve(bytes);
+    counts_.fill(0);
+    counts_.bindStorage(STRATA_BINDING_MORE);
+    setState(counting_);
+    scene_.gl().Disable(gl::kDepthTest);
+    scene_.gl().Uniform1i(STRATA_UNIFORM_PASS, buffer_.width);
+    drawRuns();
+    scene_.gl().MemoryBarrier(gl::kBufferUpdateBarrier);
+    counts_.read(0, buffer_.counts.data(), bytes);
+  }
+
+  void setState(ProgramCache& programs) const {
     const GlFunctions& gl = scene_.gl();
     gl.Viewport(0, 0, buffer_.width, buffer_.height);
     for (const unsigned capability :
@@ -164,7 +197,7 @@ class PointsRasterizer final : public Rasterizer {
     gl.Enable(gl::kDepthTest);
     gl.DepthFunc(gl::kLess);
     gl.ClipControl(gl::kLowerLeft, gl::kZeroToOne);
-    program_.use();
+    programs.get(scene_.variant()).use();
     scene_.setViewUniforms();
     gl.BindVertexArray(vertexArray_);
     gl.BindBuffer(gl::kArrayBuffer, recordNumbers_.name());
@@ -188,9 +221,10 @@ class PointsRasterizer final : public Rasterizer {
 
   ThreadPool pool_;
   GlScene scene_;
-  GlProgram program_;
-  GlBuffer commands_, recordNumbers_;
+  ProgramCache programs_, counting_;
+  GlBuffer counts_, commands_, recordNumbers_;
   PointTarget target_;
+  GlTimestamp begin_, end_;
   unsigned vertexArray_ = 0;
   bool warned_ = false;
   std::vector<std::uint32_t> ids_;

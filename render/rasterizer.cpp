@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "render/compute32_rasterizer.h"
+#include "render/compute_rasterizer.h"
 #include "render/cpu_rasterizer.h"
 #include "render/gl_functions.h"
 #include "render/points_rasterizer.h"
@@ -17,7 +17,8 @@ std::unique_ptr<Rasterizer> createFastest(const RasterizerOptions& options, std:
   try {
     context->makeCurrent();
     if (isSoftwareRenderer(glRenderer(loadGlFunctions(*context)))) return createCpuRasterizer(options);
-    return createCompute32Rasterizer(std::move(context), options);
+    const ComputeWay way = hasWideAtomics(*context) ? ComputeWay::compute64 : ComputeWay::compute32;
+    return createComputeRasterizer(way, std::move(context), options);
   } catch (const Error& error) {
     logWarning("drawing on the CPU: " + std::string(error.what()));
     return createCpuRasterizer(options);
@@ -35,9 +36,11 @@ void addStats(const DrawStats& one, DrawStats& sum) {
   sum.bytesUploaded += one.bytesUploaded;
   sum.gpuBytes = std::max(sum.gpuBytes, one.gpuBytes);
   sum.lockRetries += one.lockRetries;
+  sum.lockRepairs += one.lockRepairs;
   sum.uploadMs += one.uploadMs;
   sum.drawMs += one.drawMs;
   sum.resolveMs += one.resolveMs;
+  sum.gpuMs += one.gpuMs;
 }
 
 DrawStats Rasterizer::drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
@@ -67,10 +70,11 @@ std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOp
     case Backend::cpu:
       return createCpuRasterizer(options);
     case Backend::compute32:
-      return createCompute32Rasterizer(std::move(context), options);
+      return createComputeRasterizer(ComputeWay::compute32, std::move(context), options);
     case Backend::compute64:
+      return createComputeRasterizer(ComputeWay::compute64, std::move(context), options);
     case Backend::computeLock:
-      throw Error("backend", "not in this build, found compute64 or compute_lock (expected cpu, compute32 or points)");
+      return createComputeRasterizer(ComputeWay::computeLock, std::move(context), options);
     case Backend::points:
       return createPointsRasterizer(std::move(context), options);
   }

@@ -21,8 +21,11 @@ struct DrawStats {
   std::uint64_t bytesUploaded = 0;
   std::uint64_t gpuBytes = 0;     ///< held by node data on the GPU; 0 for cpu
   std::uint64_t lockRetries = 0;  ///< compute_lock: turns of its loops beyond the first
+  std::uint32_t lockRepairs = 0;  ///< compute_lock: pictures that compute32's passes had to finish
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
+  double gpuMs = 0.0;  ///< of drawMs, by OpenGL's own clock: clearing, culling, drawing; no reading back. 0 for cpu
 };
+void addStats(const DrawStats& one, DrawStats& sum);
 
 /// Adds what one draw did to the sum of several.
 void addStats(const DrawStats& one, DrawStats& sum);
@@ -60,7 +63,8 @@ struct RasterizerOptions {
 };
 
 /// Takes over `context`; null will do for cpu, which lets go of one it is given. `automatic` is cpu where there is no
-/// context or OpenGL runs on the CPU or lacks what compute32 needs, else compute32. Throws Error where the backend
+/// context or OpenGL runs on the CPU or lacks what compute32 needs, else compute64, or compute32 where the driver lacks
+/// 64-bit atomics. Throws Error where the backend
 /// cannot work with the context.
 std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
                                              std::unique_ptr<GlContext> context);

@@ -1,35 +1,76 @@
-// The transform of batch_plan.h.
+// The arithmetic of batch_plan.h.
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer Page { uint page[]; };
 layout(std430, binding = STRATA_BINDING_RECORDS) readonly buffer Records { BatchRecord records[]; };
+layout(std430, binding = STRATA_BINDING_PLACES) readonly buffer Places { BatchPlace places[]; };
+layout(std430, binding = STRATA_BINDING_GRIDS) readonly buffer Grids { GridRecord grids[]; };
 
-layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewport;
-layout(location = STRATA_UNIFORM_LENS) uniform vec2 lens;
+layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewports[STRATA_VIEWS];
+layout(location = STRATA_UNIFORM_LENS) uniform vec2 lenses[STRATA_VIEWS];
+layout(location = STRATA_UNIFORM_CLASSES) uniform uint classes[8];
+layout(location = STRATA_UNIFORM_CLIPS) uniform ivec2 clips;
+
+/// One batch as one view sees it.
+struct Seen {
+  vec4 x, y, depth;
+  ivec3 offset;
+  uvec3 left, right;  // shifts
+  int planes;         // 0: not seen
+  int grid;           // -1: its points need no test against the clip region
+};
+
+Seen seenBy(uint record, int view) {
+  ivec4 offset = places[record * STRATA_VIEWS + view].offset;
+  ivec4 shift = places[record * STRATA_VIEWS + view].shift;
+  int grid = shift.w >> 1;
+  Seen seen;
+  seen.x = grids[grid].x;
+  seen.y = grids[grid].y;
+  seen.depth = grids[grid].depth;
+  seen.offset = offset.xyz;
+  seen.left = uvec3(max(shift.xyz, ivec3(0)));
+  seen.right = uvec3(max(-shift.xyz, ivec3(0)));
+  seen.planes = offset.w;
+  seen.grid = (shift.w & STRATA_CLIPPED) != 0 ? grid : -1;
+  return seen;
+}
 
 uvec3 appendBits(uvec3 cell, uint word) { return cell << 10 | (uvec3(word, word >> 10, word >> 20) & 1023u); }
 
-/// Bits of the coordinates of one point, as many as the batch's precision has.
-uvec3 pointCell(uint firstWord, uint planeStride, int planes, uint point) {
-  uint word = firstWord + point;
-  uvec3 cell = appendBits(uvec3(0u), page[word]);
-  if (planes > 1) cell = appendBits(cell, page[word + planeStride]);
-  if (planes > 2) cell = appendBits(cell, page[word + 2u * planeStride]);
-  return cell;
-}
-
 float along(vec4 row, vec3 d) { return fma(d.x, row.x, fma(d.y, row.y, fma(d.z, row.z, row.w))); }
 
-/// Grid steps from the eye's cell: d of batch_plan.h.
-vec3 gridSteps(uvec3 cell, ivec3 offset, ivec3 shift) {
-  return vec3(ivec3(cell << uvec3(max(shift, ivec3(0))) >> uvec3(max(-shift, ivec3(0)))) + offset);
+/// Grid steps from the eye's cell: d of batch_plan.h. A word a plane.
+vec3 gridSteps(Seen seen, uvec3 words) {
+  uvec3 cell = appendBits(uvec3(0u), words.x);
+  if (seen.planes > 1) cell = appendBits(cell, words.y);
+  if (seen.planes > 2) cell = appendBits(cell, words.z);
+  return vec3(ivec3(cell << seen.left >> seen.right) + seen.offset);
 }
 
 /// Column and row in pixels, depth in metres.
-vec3 project(vec4 rowX, vec4 rowY, vec4 rowDepth, vec3 d) {
-  float depth = along(rowDepth, d);
-  float inverse = lens.y != 0.0 ? 1.0 / depth : 1.0;
-  return vec3(fma(along(rowX, d), inverse, viewport.x), fma(along(rowY, d), inverse, viewport.y), depth);
+vec3 project(Seen seen, int view, vec3 d) {
+  float depth = along(seen.depth, d);
+  float inverse = lenses[view].y != 0.0 ? 1.0 / depth : 1.0;
+  return vec3(fma(along(seen.x, d), inverse, viewports[view].x), fma(along(seen.y, d), inverse, viewports[view].y),
+              depth);
 }
 
-bool inImage(vec3 place) {
-  return place.z >= lens.x && all(greaterThanEqual(place.xy, vec2(0.0))) && all(lessThan(place.xy, viewport.zw));
+bool inImage(int view, vec3 place) {
+  return place.z >= lenses[view].x && all(greaterThanEqual(place.xy, vec2(0.0))) &&
+         all(lessThan(place.xy, viewports[view].zw));
+}
+
+/// DrawOptions::clip, with its boxes and planes in steps of the grid.
+bool keptByClip(int grid, vec3 d) {
+  bool kept = clips.x == 0;
+  for (int i = 0; i < clips.x; ++i)
+    kept = kept || (all(greaterThanEqual(d, grids[grid].clipLo[i].xyz)) &&
+                    all(lessThanEqual(d, grids[grid].clipHi[i].xyz)));
+  for (int i = 0; i < clips.y; ++i) kept = kept && along(grids[grid].clipPlanes[i], d) >= 0.0;
+  return kept;
+}
+
+/// DrawOptions::classes, for the class in byte `lane` of a word.
+bool keptByClass(uint word, uint lane) {
+  uint c = word >> (8u * lane) & 255u;
+  return (classes[c >> 5] >> (c & 31u) & 1u) != 0u;
 }

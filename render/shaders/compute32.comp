@@ -1,37 +1,56 @@
-// Two passes over all batches: the smallest depth of each pixel, then the lowest id at that depth. One program for
-// both, so that both compute the same bits. One work-group draws one batch (Schütz 2022, 3.2).
-layout(local_size_x = STRATA_GROUP_SIZE) in;
-
+// Two passes over the batches: the smallest depth of each pixel, then the lowest id at that depth. One program for
+// both, so that both compute the same bits. The first notes in a bit for each point whether it was at the front when
+// it came; the second visits only those, for a point that ends at the front was there when it came.
 layout(std430, binding = STRATA_BINDING_DEPTH) buffer Depths { uint depths[]; };
 layout(std430, binding = STRATA_BINDING_ID) buffer Ids { uint ids[]; };
+layout(std430, binding = STRATA_BINDING_MORE) buffer Candidates { uint candidates[]; };
 
-layout(location = STRATA_UNIFORM_FIRST_RECORD) uniform uint firstRecord;
-layout(location = STRATA_UNIFORM_INDEX_PASS) uniform int indexPass;
-layout(location = STRATA_UNIFORM_ROWS) uniform ivec2 rows;
+layout(location = STRATA_UNIFORM_PASS) uniform int indexPass;
+
+const uint kFours = 8u;  // of points, whose bits are one word
+
+bool visit(uvec3 words, uint point) {
+  bool front = false;
+  for (int view = 0; view < STRATA_VIEWS; ++view) {
+    uint depth;
+    int pixel = placePoint(view, words, depth);
+    if (pixel < 0) continue;
+    if (indexPass != 0) {
+      uint id = batch.firstId + point;
+      if (depth == depths[pixel] && id < ids[pixel]) atomicMin(ids[pixel], id);
+    } else {
+      uint old = depths[pixel];
+      if (depth < old) atomicMin(depths[pixel], depth);
+      front = front || depth <= old;
+    }
+  }
+  return front;
+}
 
 void main() {
-  uint record = firstRecord + gl_WorkGroupID.x;
-  vec4 rowX = records[record].x;
-  vec4 rowY = records[record].y;
-  vec4 rowDepth = records[record].depth;
-  ivec4 offset = records[record].offset;
-  ivec3 shift = records[record].shift.xyz;
-  uint firstWord = records[record].firstWord;
-  uint planeStride = records[record].planeStride;
-  uint pointCount = records[record].pointCount;
-  uint firstId = records[record].firstId;
-  for (uint point = gl_LocalInvocationID.x; point < pointCount; point += STRATA_GROUP_SIZE) {
-    uvec3 cell = pointCell(firstWord, planeStride, offset.w, point);
-    vec3 place = project(rowX, rowY, rowDepth, gridSteps(cell, offset.xyz, shift));
-    if (!inImage(place)) continue;
-    int row = int(place.y);
-    if (row < rows.x || row >= rows.y) continue;
-    int pixel = (row - rows.x) * int(viewport.z) + int(place.x);
-    uint depth = floatBitsToUint(place.z);
+  beginBatch();
+  uint thread = gl_LocalInvocationID.x;
+  uint end = batch.pointCount + pointsBefore();
+  uint threads = min((end + 3u) >> 2, uint(STRATA_GROUP_SIZE));  // that have a point
+  for (uint first = 4u * thread, slot = batch.firstCandidate + thread; first < end;
+       first += 4u * kFours * STRATA_GROUP_SIZE, slot += threads) {
     if (indexPass == 0) {
-      if (depth < depths[pixel]) atomicMin(depths[pixel], depth);
-    } else if (depth == depths[pixel]) {
-      atomicMin(ids[pixel], firstId + point);
+      uint bits = 0u;
+      for (uint i = 0u; i < kFours; ++i) {
+        uint at = first + 4u * STRATA_GROUP_SIZE * i;
+        if (at < end) bits |= visitFour(at) << (4u * i);
+      }
+      candidates[slot] = bits;
+    } else {
+      for (uint bits = candidates[slot]; bits != 0u; bits &= bits - 1u) {
+        uint bit = uint(findLSB(bits));
+        uint point = first + 4u * STRATA_GROUP_SIZE * (bit >> 2) + (bit & 3u) - pointsBefore();
+        uint word = batch.firstWord + point;
+        uvec3 words = uvec3(page[word], 0u, 0u);
+        if (planes > 1) words.y = page[word + batch.planeStride];
+        if (planes > 2) words.z = page[word + 2u * batch.planeStride];
+        visit(words, point);
+      }
     }
   }
 }

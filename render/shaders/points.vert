@@ -6,12 +6,29 @@ flat out uint id;
 
 const float kDepthScale = 1.0 / 1099511627776.0;  // 2^-40: depths up to 1e12 m
 
+bool kept(BatchRecord batch, Seen seen, uint point, vec3 d) {
+#if STRATA_CLASSES
+  uint at = (batch.firstWord & 3u) + point;
+  if (batch.firstClass != 0u && !keptByClass(page[batch.firstClass + (at >> 2)], at & 3u)) return false;
+#endif
+#if STRATA_CLIP
+  if (seen.grid >= 0 && !keptByClip(seen.grid, d)) return false;
+#endif
+  return true;
+}
+
 void main() {
   uint point = uint(gl_VertexID);
-  uvec3 cell = pointCell(records[record].firstWord, records[record].planeStride, records[record].offset.w, point);
-  vec3 d = gridSteps(cell, records[record].offset.xyz, records[record].shift.xyz);
-  vec3 place = project(records[record].x, records[record].y, records[record].depth, d);
-  id = records[record].firstId + point;
+  BatchRecord batch = records[record];
+  Seen seen = seenBy(record, 0);
+  uint word = batch.firstWord + point;
+  uvec3 words = uvec3(page[word], 0u, 0u);
+  if (seen.planes > 1) words.y = page[word + batch.planeStride];
+  if (seen.planes > 2) words.z = page[word + 2u * batch.planeStride];
+  vec3 d = gridSteps(seen, words);
+  vec3 place = project(seen, 0, d);
+  id = batch.firstId + point;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside
-  if (inImage(place)) gl_Position = vec4((floor(place.xy) + 0.5) / viewport.xy - 1.0, place.z * kDepthScale, 1.0);
+  if (inImage(0, place) && kept(batch, seen, point, d))
+    gl_Position = vec4((floor(place.xy) + 0.5) / viewports[0].xy - 1.0, place.z * kDepthScale, 1.0);
 }

@@ -9,39 +9,123 @@
 namespace strata::shader {
 using uint = std::uint32_t;
 using vec4 = glm::vec4;
+using dvec4 = glm::dvec4;
 using ivec4 = glm::ivec4;
+using uvec4 = glm::uvec4;
 #endif
 
-#define STRATA_GROUP_SIZE 128  // threads of the work-group that draws one batch (Schütz 2022, 3.2)
+#define STRATA_MOST_VIEWS 4  // pictures that one pass over the points makes
+#define STRATA_MOST_CLIPS 4  // boxes, and as many planes
 
+// Storage blocks of drawing
 #define STRATA_BINDING_PAGE 0     // words of node data
 #define STRATA_BINDING_RECORDS 1  // BatchRecord
-#define STRATA_BINDING_DEPTH 2    // per pixel: bits of the smallest depth
-#define STRATA_BINDING_ID 3       // per pixel: the lowest id at that depth
+#define STRATA_BINDING_PLACES 2   // BatchPlace, one a view for each record
+#define STRATA_BINDING_GRIDS 3    // GridRecord
+#define STRATA_BINDING_DEPTH 4    // per pixel: bits of the smallest depth; compute64: depth and id in 64 bits
+#define STRATA_BINDING_ID 5       // per pixel: the lowest id at that depth
+#define STRATA_BINDING_MORE 6     // compute32: candidates; compute_lock: locks; accumulate: sums or counts
+#define STRATA_BINDING_COUNTERS 7  // Counters
+// Storage blocks of planning, beside page, records and places
+#define STRATA_BINDING_PARTS 3  // DrawPart
+#define STRATA_BINDING_VIEWS 4  // ViewRecord
+#define STRATA_BINDING_RUNS 5   // DispatchRecord
 
-#define STRATA_UNIFORM_VIEWPORT 0      // half width, half height, width, height in pixels
-#define STRATA_UNIFORM_LENS 1          // near plane in metres, 1 for perspective or 0
-#define STRATA_UNIFORM_FIRST_RECORD 2  // of the first work-group
-#define STRATA_UNIFORM_INDEX_PASS 3    // 0: depth pass, 1: index pass
-#define STRATA_UNIFORM_ROWS 4          // first and end row of the image that the buffers hold
+#define STRATA_UNIFORM_VIEWPORT 0       // per view: half width, half height, width, height in pixels
+#define STRATA_UNIFORM_LENS 4           // per view: near plane in metres, 1 for perspective or 0
+#define STRATA_UNIFORM_PIXELS 8         // per view: first pixel in the buffers, first row and end row that they hold
+#define STRATA_UNIFORM_FIRST_RECORD 12  // of the first work-group
+#define STRATA_UNIFORM_PASS 13          // compute32: 0 is the depth pass, 1 the index pass
+#define STRATA_UNIFORM_CLASSES 14       // 8 words of bits: the classes drawn
+#define STRATA_UNIFORM_CLIPS 22         // number of clip boxes and planes
+#define STRATA_UNIFORM_PRECISIONS 23    // colours of 10, 20 and 30 bits instead of the points' own; 0: their own
+#define STRATA_UNIFORM_FIRST_PART 24    // planning
+#define STRATA_UNIFORM_FORCED 25        // planning, experiments: planes to read, and nothing is culled; 0: neither
 
 #define STRATA_ATTRIBUTE_RECORD 0
 
-/// One batch as a shader draws it; see batch_plan.h for the arithmetic.
+#define STRATA_CLIPPED 1  // flag of BatchPlace: its points are to be tested
+#define STRATA_BOX_WORDS 16  // of BatchBox
+
+/// One batch to draw.
 struct BatchRecord {
-  vec4 x;  // xyz: step a cell, w: base
-  vec4 y;
-  vec4 depth;
-  ivec4 offset;      // w: planes to read, 1 to 3
-  ivec4 shift;       // to the right where negative; w: unused
-  uint firstWord;    // of plane 0 in the page
-  uint planeStride;  // words from one plane to the next
+  uint firstWord;       // of plane 0 in the page
+  uint planeStride;     // words from one plane to the next; a multiple of 4
   uint pointCount;
   uint firstId;
+  uint firstClass;      // word of the page with the first point's class in byte firstWord % 4; 0: no classes
+  uint firstColour;     // word of the page with the first point's colour; 0: none
+  uint firstCandidate;  // word of its candidates
+  uint padding;
+};
+
+/// How one view sees a batch: GridPlace of batch_plan.h.
+struct BatchPlace {
+  ivec4 offset;  // w: planes to read, 1 to 3; 0: not seen
+  ivec4 shift;   // to the left; to the right where negative. w: index of the grid * 2, + STRATA_CLIPPED
+};
+
+/// GridTransform of batch_plan.h.
+struct GridRecord {
+  vec4 x, y, depth;  // xyz: for each step, w: base
+  vec4 clipLo[STRATA_MOST_CLIPS], clipHi[STRATA_MOST_CLIPS];
+  vec4 clipPlanes[STRATA_MOST_CLIPS];
+};
+
+/// Written by the shaders, cleared before each frame.
+struct Counters {
+  uint pointsDrawn;
+  uint batchesDrawn;
+  uint batchesCulled;
+  uint batchesAt[3];
+  uint lockRetries;
+  uint lockGivenUp;
+};
+
+/// One batch as it lies in a page, before the planes of its part.
+struct BatchBox {
+  uint boxMin[6];       // three doubles: metres from the node's origin
+  int step[3];          // grid steps from the corner of the node's first batch
+  uint bits;            // an axis, a byte each
+  uint firstPoint;      // within the node
+  uint pointCount;
+  uint firstCandidate;  // word, from the part's first
+  uint padding[3];
+};
+
+/// Batches of one item that lie in one page.
+struct DrawPart {
+  dvec4 origin;                     // NodeData::origin
+  dvec4 step;                       // of the grid, metres
+  ivec4 first[STRATA_MOST_VIEWS];   // grid steps from the eye's cell to the node's first corner; w: grid, -1: not seen
+  uint firstBox, boxCount;          // in the page: words, batches
+  uint firstWord, planeStride;      // of plane 0
+  uint firstPoint, prefix;          // within the node: the part's first, the end of what is drawn
+  uint firstId, planes;             // of the node's first point; planes loaded
+  uint firstClass, firstColour;     // words of the part's first point; 0: none
+  uint firstCandidate, run;
+  uint firstRecord, padding[3];     // of the run
+};
+
+/// A view as planning needs it; everything is relative to the eye. See ViewConstants.
+struct ViewRecord {
+  dvec4 planes[5];
+  dvec4 eye;
+  dvec4 forward;
+  dvec4 size;  // pixels a metre at depth 1, corner stretch, near plane, 1 for perspective or 0
+  dvec4 clipLo[STRATA_MOST_CLIPS], clipHi[STRATA_MOST_CLIPS];
+  dvec4 clipPlanes[STRATA_MOST_CLIPS];
+};
+
+/// Layout of OpenGL's DispatchIndirectCommand.
+struct DispatchRecord {
+  uint x, y, z;
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BatchRecord) == 96, "std430 has no padding here");
+static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchPlace) == 32 && sizeof(GridRecord) == 240);
+static_assert(sizeof(BatchBox) == 4 * STRATA_BOX_WORDS && sizeof(DrawPart) == 192 && sizeof(ViewRecord) == 640);
+static_assert(sizeof(DispatchRecord) == 12 && sizeof(Counters) == 32);
 }  // namespace strata::shader
 #endif
 #endif

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "render/compute_rasterizer.h"
 #include "render/gl_objects.h"
 #include "render/rasterizer.h"
 #include "tests/support/gl_contexts.h"
@@ -37,7 +38,8 @@ TEST_P(GlContexts, NameTheFileAndTheLineOfAShadersError) {
 TEST_P(GlContexts, LeaveSoftwareRenderingToTheCpu) {
   STRATA_REQUIRE_CONTEXT(context, GetParam());
   const bool software = isSoftwareRenderer(glRenderer(loadGlFunctions(*context)));
-  EXPECT_EQ(createRasterizer(Backend::automatic, {}, std::move(context))->name(), software ? "cpu" : "compute32");
+  const std::string fastest = hasWideAtomics(*context) ? "compute64" : "compute32";
+  EXPECT_EQ(createRasterizer(Backend::automatic, {}, std::move(context))->name(), software ? "cpu" : fastest);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GlContexts, testing::Values(ContextKind::egl, ContextKind::osMesa),

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "render/rasterizer.h"
+#include "render/compute_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
@@ -16,6 +16,9 @@ const glm::dvec3 kUtm(456789.123, 5412345.678, 312.5);
 /// No symmetry of a grid, on which many points would have one depth and rounding decide between them.
 const glm::dvec3 kDirection(1.0, 0.83, -0.71);
 
+/// Before any test makes a context.
+const bool kOffered = (test::offerWideAtomicsInSoftware(), true);
+
 class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKind>> {
  protected:
   /// False where there is no context; the test is then marked as skipped.
@@ -23,12 +26,15 @@ class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKi
     std::string reason;
     auto context = test::tryContext(std::get<1>(GetParam()), reason);
     if (context == nullptr) return false;
+    if (backend() == Backend::compute64 && !hasWideAtomics(*context)) return false;
     rasterizer_ = createRasterizer(std::get<0>(GetParam()), options, std::move(context));
     return true;
   }
 
+  Backend backend() const { return std::get<0>(GetParam()); }
+
   /// `points` may resolve a tie of depths either way.
-  double wantedAgreement() const { return std::get<0>(GetParam()) == Backend::points ? 0.995 : 0.999; }
+  double wantedAgreement() const { return backend() == Backend::points ? 0.995 : 0.999; }
 
   void expectOraclesPicture(const RenderList& list, const View& view) {
     rasterizer_->draw(list, view, {}, frame_);
@@ -189,20 +195,35 @@ TEST_P(GlRasterizer, NeverDrawsAFreedNodeInPlaceOfAnother) {
   }
 }
 
+/// A node of 20 000 points around kUtm, then copies of its batches up to `count` points.
+std::shared_ptr<const NodeData> longNode(int child, std::uint32_t count, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  std::vector<glm::dvec3> points(20000);
+  for (glm::dvec3& p : points) p = kUtm + glm::dvec3(unit(random), unit(random), unit(random));
+  NodeData node = *test::makeNode(NodeKey{}.child(child), points, 0.00001, 10000, 3);
+  while (node.pointCount() < count) {
+    for (const std::size_t b : {0, 1}) {
+      Batch batch = node.batches[b];
+      for (auto& plane : node.position)
+        plane.insert(plane.end(), plane.begin() + batch.firstPoint, plane.begin() + batch.firstPoint + 10000);
+      batch.firstPoint = node.pointCount() - 10000;
+      node.batches.push_back(batch);
+    }
+  }
+  for (auto* attribute : {&node.colour}) attribute->resize(node.pointCount(), 0xff808080u);
+  node.intensity.resize(node.pointCount());
+  node.classification.resize(node.pointCount());
+  return std::make_shared<const NodeData>(std::move(node));
+}
+
 TEST_P(GlRasterizer, DrawsFromManyPages) {
   RasterizerOptions options;
   options.gpuBytes = std::uint64_t{300} << 20;
   options.uploadBytesPerFrame = options.gpuBytes;
   STRATA_CREATE_OR_SKIP(options);
   std::vector<std::shared_ptr<const NodeData>> nodes;
-  const std::vector<glm::dvec3> filler(5000000, kUtm + 0.5);
-  std::mt19937 random(9);
-  std::uniform_real_distribution<double> unit(-1.0, 1.0);
-  for (int i = 0; i < 3; ++i) {
-    std::vector<glm::dvec3> points = filler;
-    for (std::size_t p = 0; p < 20000; ++p) points[p] = kUtm + glm::dvec3(unit(random), unit(random), unit(random));
-    nodes.push_back(test::makeNode(NodeKey{}.child(i), points, 0.00001, Batch::kMaxPoints, 3));
-  }
+  for (int i = 0; i < 3; ++i) nodes.push_back(longNode(i, 2400000, 9 + static_cast<std::uint32_t>(i)));
   RenderList list = test::makeList(nodes);
   for (RenderItem& item : list.items) item.pointCount = 20000;
   list.pointCount = 60000;
@@ -211,18 +232,37 @@ TEST_P(GlRasterizer, DrawsFromManyPages) {
   EXPECT_GE(rasterizer_->draw(list, view, {}, frame_).gpuBytes, 2 * (std::uint64_t{64} << 20));
 }
 
+TEST_P(GlRasterizer, DrawsANodeLongerThanAPage) {
+  RasterizerOptions options;
+  options.gpuBytes = std::uint64_t{200} << 20;
+  STRATA_CREATE_OR_SKIP(options);
+  if (std::get<1>(GetParam()) != ContextKind::egl || backend() == Backend::points) GTEST_SKIP() << "once is enough";
+  const RenderList list = test::makeList({longNode(0, 6000000, 9)});
+  const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 300, 300, 1.0);
+  expectOraclesPicture(list, view);
+  EXPECT_EQ(rasterizer_->draw(list, view, {}, frame_).nodesNotUploaded, 0u);
+}
+
 TEST_P(GlRasterizer, DrawsAnImageLargerThanOneStorageBlock) {
   STRATA_CREATE_OR_SKIP();
+  if (backend() != Backend::compute64) GTEST_SKIP() << "its pixels are the longest";
   const RenderList list = test::makeTown(kUtm, 200.0, 50000, 10);
-  if (std::get<0>(GetParam()) != Backend::compute32) GTEST_SKIP() << "only compute32 draws in bands";
-  expectOraclesPicture(list, viewOfBox(test::boundsOf(list), kDirection, 4096, 8400, 1.0));
+  expectOraclesPicture(list, viewOfBox(test::boundsOf(list), kDirection, 4096, 4200, 1.0));
+}
+
+std::string backendName(Backend backend) {
+  return backend == Backend::compute64     ? "Compute64"
+         : backend == Backend::compute32   ? "Compute32"
+         : backend == Backend::computeLock ? "ComputeLock"
+                                           : "Points";
 }
 
 INSTANTIATE_TEST_SUITE_P(All, GlRasterizer,
-                         testing::Combine(testing::Values(Backend::compute32, Backend::points),
+                         testing::Combine(testing::Values(Backend::compute64, Backend::compute32, Backend::computeLock,
+                                                          Backend::points),
                                           testing::Values(ContextKind::egl, ContextKind::osMesa)),
                          [](const testing::TestParamInfo<std::tuple<Backend, ContextKind>>& instance) {
-                           return std::string(std::get<0>(instance.param) == Backend::points ? "Points" : "Compute32") +
+                           return backendName(std::get<0>(instance.param)) +
                                   test::contextName(std::get<1>(instance.param));
                          });
 

@@ -13,6 +13,10 @@ enum class ContextKind { egl, osMesa };
 
 inline std::string contextName(ContextKind kind) { return kind == ContextKind::egl ? "Egl" : "OsMesa"; }
 
+/// Mesa's llvmpipe compiles and runs 64-bit atomic minima in storage blocks, but 22.3 does not say that it can. This
+/// makes it say so, where OpenGL is llvmpipe; to be called before the process makes its first context.
+void offerWideAtomicsInSoftware();
+
 /// Null with the reason where the machine cannot make one.
 inline std::unique_ptr<GlContext> tryContext(ContextKind kind, std::string& reason) {
   try {
