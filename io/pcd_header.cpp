@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "core/error.h"
-#include "io/text_lines.h"
+#include "io/header_lines.h"
 
 namespace strata {
 namespace {
@@ -15,11 +15,11 @@ constexpr std::uint64_t kMostRecordBytes = 1 << 20;
 
 class PcdHeaderParser {
  public:
-  PcdHeaderParser(const std::string& file, std::string_view head) : file_(file), head_(head) {}
+  PcdHeaderParser(const std::string& file, std::string_view head) : file_(file), lines_(file, head) {}
 
   PcdHeader run() {
     bool anything = false;
-    while (nextLine()) {
+    while (lines_.next()) {
       if (words_.empty() || words_[0].starts_with('#')) continue;
       const std::string_view key = words_[0];
       const std::vector<std::string_view> values(words_.begin() + 1, words_.end());
@@ -32,15 +32,15 @@ class PcdHeaderParser {
       } else if (key == "COUNT") {
         counts_ = numbers(values);
       } else if (key == "WIDTH" || key == "HEIGHT" || key == "POINTS") {
-        if (values.size() != 1) fail("found " + std::to_string(values.size()) + " numbers (expected 1)");
+        if (values.size() != 1) lines_.fail("found " + std::to_string(values.size()) + " numbers (expected 1)");
         (key == "WIDTH" ? width_ : key == "HEIGHT" ? height_ : points_) = numbers(values)[0];
         pointsSeen_ = pointsSeen_ || key == "POINTS";
       } else if (key == "DATA") {
-        if (values.empty()) fail("found DATA without ascii, binary or binary_compressed");
+        if (values.empty()) lines_.fail("found DATA without ascii, binary or binary_compressed");
         return finish(values[0]);
       } else if (key != "VERSION" && key != "VIEWPOINT") {
-        fail("found '" + shown(key) + "' (expected a keyword of the PCD header)" +
-             (anything ? "" : ": this is no PCD file"));
+        lines_.fail("found '" + shownWord(key) + "' (expected a keyword of the PCD header)" +
+                    (anything ? "" : ": this is no PCD file"));
       }
       anything = true;
     }
@@ -48,31 +48,13 @@ class PcdHeaderParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(file_, "line " + std::to_string(header_.headerLines) + ": " + what);
-  }
-  static std::string shown(std::string_view word) {
-    std::string text;
-    for (const char c : word.substr(0, 32)) text += c >= ' ' && c < 127 ? c : '?';
-    return text;
-  }
-
-  bool nextLine() {
-    const std::size_t end = head_.find('\n', header_.headerBytes);
-    if (end == std::string_view::npos) return false;
-    splitColumns(head_.substr(header_.headerBytes, end - header_.headerBytes), words_);
-    header_.headerBytes = end + 1;
-    ++header_.headerLines;
-    return true;
-  }
-
   std::vector<std::uint64_t> numbers(const std::vector<std::string_view>& words) const {
     std::vector<std::uint64_t> values;
     for (const std::string_view word : words) {
       std::uint64_t value = 0;
       const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (failure != std::errc() || end != word.data() + word.size())
-        fail("found '" + shown(word) + "' (expected a number)");
+        lines_.fail("found '" + shownWord(word) + "' (expected a number)");
       values.push_back(value);
     }
     return values;
@@ -88,7 +70,7 @@ class PcdHeaderParser {
       if (size == 4) return isSigned ? ScalarType::i32 : ScalarType::u32;
       if (size == 8) return isSigned ? ScalarType::i64 : ScalarType::u64;
     }
-    throw Error(file_, "found a field of TYPE " + shown(letter) + " and SIZE " + std::to_string(size) +
+    throw Error(file_, "found a field of TYPE " + shownWord(letter) + " and SIZE " + std::to_string(size) +
                            " (expected I, U or F of 1, 2, 4 or 8 bytes)");
   }
 
@@ -116,13 +98,13 @@ class PcdHeaderParser {
     else if (encoding == "binary_compressed")
       header_.encoding = PcdEncoding::binaryCompressed;
     else
-      fail("found DATA '" + shown(encoding) + "' (expected ascii, binary or binary_compressed)");
+      lines_.fail("found DATA '" + shownWord(encoding) + "' (expected ascii, binary or binary_compressed)");
     checkLists();
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const ScalarType scalar = type(types_[i], sizes_[i]);
       if (counts_[i] == 0 || counts_[i] > kMostRecordBytes ||
           header_.recordBytes + counts_[i] * sizes_[i] > kMostRecordBytes)
-        throw Error(file_, "field '" + shown(names_[i]) + "': found COUNT " + std::to_string(counts_[i]) +
+        throw Error(file_, "field '" + shownWord(names_[i]) + "': found COUNT " + std::to_string(counts_[i]) +
                                " (expected 1 or more, and points of at most a megabyte)");
       header_.fields.push_back(
           {std::string(names_[i]), scalar, static_cast<std::uint32_t>(counts_[i]), header_.recordBytes});
@@ -134,13 +116,15 @@ class PcdHeaderParser {
     if (pointsSeen_ && width_ != 0 && width_ * height_ != points_)
       throw Error(file_, "found " + std::to_string(points_) + " POINTS (expected " + std::to_string(width_ * height_) +
                              ", WIDTH times HEIGHT)");
+    header_.headerBytes = lines_.bytes();
+    header_.headerLines = lines_.lines();
     return std::move(header_);
   }
 
   const std::string& file_;
-  std::string_view head_;
+  HeaderLines lines_;
+  const std::vector<std::string_view>& words_ = lines_.words();
   PcdHeader header_;
-  std::vector<std::string_view> words_;
   std::vector<std::string_view> names_;
   std::vector<std::string_view> types_;
   std::vector<std::uint64_t> sizes_;

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "core/error.h"
-#include "io/text_lines.h"
+#include "io/header_lines.h"
 
 namespace strata {
 namespace {
@@ -28,15 +28,15 @@ constexpr std::array<TypeName, 20> kTypes{
 /// Reads line by line; every fault names its line.
 class PlyHeaderParser {
  public:
-  PlyHeaderParser(const std::string& file, std::string_view head) : file_(file), head_(head) {}
+  PlyHeaderParser(const std::string& file, std::string_view head) : file_(file), lines_(file, head) {}
 
   PlyHeader run() {
-    if (!nextLine() || words_.empty() || words_[0] != "ply") throw Error(file_, "found no 'ply' in line 1");
+    if (!lines_.next() || words_.empty() || words_[0] != "ply") throw Error(file_, "found no 'ply' in line 1");
     bool formatSeen = false;
-    while (nextLine()) {
+    while (lines_.next()) {
       if (words_.empty() || words_[0] == "comment" || words_[0] == "obj_info") continue;
       if (words_[0] == "end_header") {
-        if (!formatSeen) fail("found no format line");
+        if (!formatSeen) lines_.fail("found no format line");
         return finish();
       }
       if (words_[0] == "format") {
@@ -47,33 +47,15 @@ class PlyHeaderParser {
       } else if (words_[0] == "property") {
         property();
       } else {
-        fail("found '" + shown(words_[0]) + "' (expected element, property or end_header)");
+        lines_.fail("found '" + shownWord(words_[0]) + "' (expected element, property or end_header)");
       }
     }
     throw Error(file_, "the header ends early, found no end_header");
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(file_, "line " + std::to_string(header_.headerLines) + ": " + what);
-  }
-  static std::string shown(std::string_view word) {
-    std::string text;
-    for (const char c : word.substr(0, 32)) text += c >= ' ' && c < 127 ? c : '?';
-    return text;
-  }
-
-  bool nextLine() {
-    const std::size_t end = head_.find('\n', header_.headerBytes);
-    if (end == std::string_view::npos) return false;
-    splitColumns(head_.substr(header_.headerBytes, end - header_.headerBytes), words_);
-    header_.headerBytes = end + 1;
-    ++header_.headerLines;
-    return true;
-  }
-
   void format() {
-    if (words_.size() < 2) fail("found a format line without a format");
+    if (words_.size() < 2) lines_.fail("found a format line without a format");
     if (words_[1] == "ascii")
       header_.encoding = PlyEncoding::ascii;
     else if (words_[1] == "binary_little_endian")
@@ -81,39 +63,42 @@ class PlyHeaderParser {
     else if (words_[1] == "binary_big_endian")
       header_.encoding = PlyEncoding::bigEndian;
     else
-      fail("found format '" + shown(words_[1]) + "' (expected ascii, binary_little_endian or binary_big_endian)");
-    if (words_.size() > 2 && words_[2] != "1.0") fail("found version '" + shown(words_[2]) + "' (expected 1.0)");
+      lines_.fail("found format '" + shownWord(words_[1]) +
+                  "' (expected ascii, binary_little_endian or binary_big_endian)");
+    if (words_.size() > 2 && words_[2] != "1.0")
+      lines_.fail("found version '" + shownWord(words_[2]) + "' (expected 1.0)");
   }
 
   void element() {
-    if (words_.size() < 3) fail("found an element without name and count");
+    if (words_.size() < 3) lines_.fail("found an element without name and count");
     PlyElement element;
     element.name = words_[1];
     const auto [end, failure] = std::from_chars(words_[2].data(), words_[2].data() + words_[2].size(), element.count);
     if (failure != std::errc() || end != words_[2].data() + words_[2].size())
-      fail("found '" + shown(words_[2]) + "' (expected the number of elements)");
+      lines_.fail("found '" + shownWord(words_[2]) + "' (expected the number of elements)");
     header_.elements.push_back(std::move(element));
   }
 
   ScalarType type(std::string_view name) const {
     for (const TypeName& known : kTypes)
       if (known.name == name) return known.type;
-    fail("unknown type '" + shown(name) + "'");
+    lines_.fail("unknown type '" + shownWord(name) + "'");
   }
 
   void property() {
-    if (header_.elements.empty()) fail("found a property before the first element");
+    if (header_.elements.empty()) lines_.fail("found a property before the first element");
     std::vector<PlyProperty>& properties = header_.elements.back().properties;
     if (properties.size() == kMostProperties)
-      fail("found more than " + std::to_string(kMostProperties) + " properties");
+      lines_.fail("found more than " + std::to_string(kMostProperties) + " properties");
     if (words_.size() >= 5 && words_[1] == "list") {
       const ScalarType count = type(words_[2]);
-      if (count == ScalarType::f32 || count == ScalarType::f64) fail("found a list with a count that is no integer");
+      if (count == ScalarType::f32 || count == ScalarType::f64)
+        lines_.fail("found a list with a count that is no integer");
       properties.push_back({std::string(words_[4]), type(words_[3]), count});
     } else if (words_.size() >= 3 && words_[1] != "list") {
       properties.push_back({std::string(words_[2]), type(words_[1]), std::nullopt});
     } else {
-      fail("found a property without type and name");
+      lines_.fail("found a property without type and name");
     }
   }
 
@@ -122,13 +107,15 @@ class PlyHeaderParser {
                                      [](const PlyElement& element) { return element.name == "vertex"; });
     if (vertex == header_.elements.end()) throw Error(file_, "found no element 'vertex', so it holds no points");
     header_.vertex = static_cast<std::size_t>(vertex - header_.elements.begin());
+    header_.headerBytes = lines_.bytes();
+    header_.headerLines = lines_.lines();
     return std::move(header_);
   }
 
   const std::string& file_;
-  std::string_view head_;
+  HeaderLines lines_;
+  const std::vector<std::string_view>& words_ = lines_.words();
   PlyHeader header_;
-  std::vector<std::string_view> words_;
 };
 
 }  // namespace

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace strata {
+
+/// A text header that stands before the points of a PLY or PCD file, taken line by line; every fault names its line.
+class HeaderLines {
+ public:
+  /// `file` names the file in errors; `head` is its beginning. Both have to outlive the object.
+  HeaderLines(const std::string& file, std::string_view head) : file_(file), head_(head) {}
+
+  /// Splits the next line into words. False where `head` holds no other whole line.
+  bool next();
+  const std::vector<std::string_view>& words() const { return words_; }
+  /// Bytes and lines taken so far.
+  std::size_t bytes() const { return bytes_; }
+  std::size_t lines() const { return lines_; }
+
+  /// Throws Error `FILE: line 7: what`.
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  const std::string& file_;
+  std::string_view head_;
+  std::vector<std::string_view> words_;
+  std::size_t bytes_ = 0, lines_ = 0;
+};
+
+/// The start of a word, with what cannot be printed as question marks.
+std::string shownWord(std::string_view word);
+
+}  // namespace strata
