@@ -11,6 +11,7 @@ namespace {
 constexpr double kSteepest = 89.0 * std::numbers::pi / 180.0;  // elevation of the eye, so that up stays defined
 constexpr double kZoomPerNotch = 0.85;
 constexpr double kFlySpeed = 0.5;  // share of the distance to the target, per second
+constexpr double kApproach = 0.4;  // of the distance, a double click
 constexpr double kFastFactor = 5.0;
 constexpr double kNearest = 1e-4;  // metres; a zoom stops here
 
@@ -105,12 +106,66 @@ View standardView(const View& view, const Box& box, StandardView which) {
   return framed(turned, box);
 }
 
+View withOrthographic(const View& view, bool orthographic) {
+  View next = view;
+  next.orthographic = orthographic;
+  const double distance = glm::length(view.target - view.eye);
+  const double tangent = std::tan(0.5 * view.fovY);
+  if (orthographic && !view.orthographic) next.orthographicHeight = 2.0 * distance * tangent;
+  // A zoom without perspective changes the height alone: step back to where it is seen as high.
+  if (!orthographic && view.orthographic)
+    next.eye = view.target + (view.eye - view.target) * (0.5 * view.orthographicHeight / tangent / distance);
+  return next;
+}
+
+View approached(const View& view, const glm::dvec3& point) {
+  View next = view;
+  next.target = point;
+  const double distance = std::max(kApproach * glm::distance(view.eye, point), kNearest);
+  next.eye = point - viewBasis(view).forward * distance;
+  next.orthographicHeight = std::max(kApproach * view.orthographicHeight, kNearest);
+  return next;
+}
+
+View glided(const View& from, const View& to, double u) {
+  if (u >= 1.0) return to;
+  const double s = u * u * (3.0 - 2.0 * u);
+  const auto ratio = [s](double a, double b) { return a * std::pow(b / a, s); };
+  const glm::dvec3 away = from.eye - from.target;
+  const glm::dvec3 awayTo = to.eye - to.target;
+  const glm::dvec3 a = glm::normalize(away);
+  const glm::dvec3 b = glm::normalize(awayTo);
+  const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+  // Opposite directions have no shortest way; any axis square to them will do.
+  glm::dvec3 axis = glm::cross(a, b);
+  if (glm::length(axis) < 1e-9) axis = glm::cross(a, std::abs(a.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0));
+  View now = to;
+  now.width = from.width;
+  now.height = from.height;
+  now.target = glm::mix(from.target, to.target, s);
+  now.eye = now.target + rotated(a, s * angle, glm::normalize(axis)) * ratio(glm::length(away), glm::length(awayTo));
+  now.up = glm::mix(from.up, to.up, s);
+  if (glm::length(now.up) < 1e-6) now.up = to.up;
+  now.orthographicHeight = ratio(from.orthographicHeight, to.orthographicHeight);
+  return now;
+}
+
+void CameraControl::advance(double seconds) {
+  if (!glide_) return;
+  glide_->u += seconds / kGlideSeconds;
+  const int width = view_.width, height = view_.height;
+  view_ = glided(glide_->from, glide_->to, glide_->u);
+  if (glide_->u >= 1.0) glide_.reset();
+  resize(width, height);
+}
+
 void CameraControl::resize(int width, int height) {
   view_.width = std::max(width, 1);
   view_.height = std::max(height, 1);
 }
 
 void CameraControl::press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  glide_.reset();
   drag_ = drag;
   cursor_ = cursor;
   anchor_ = under.value_or(view_.target);
@@ -124,7 +179,7 @@ void CameraControl::move(const glm::dvec2& cursor) {
 
 void CameraControl::wheel(double notches, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
   const glm::dvec3 anchor = under ? *under : worldPoint(view_, cursor, depthOf(view_, view_.target));
-  view_ = zoomed(view_, anchor, std::pow(kZoomPerNotch, notches));
+  setView(zoomed(view_, anchor, std::pow(kZoomPerNotch, notches)));
 }
 
 }  // namespace strata

@@ -43,6 +43,14 @@ View standardView(const View& view, const Box& box, StandardView which);
 /// All of `box`, from where the camera looks now.
 View framed(const View& view, const Box& box);
 
+/// The same view without perspective, or with it again; what lies at the target keeps its size.
+View withOrthographic(const View& view, bool orthographic);
+/// `point` in the middle of the picture, at 0.4 of its distance, seen from the same direction.
+View approached(const View& view, const glm::dvec3& point);
+/// Where a glide is after share `u` of its way, 0 to 1: the target moves straight, the eye swings around it, the
+/// distance changes by equal ratios in equal times; it starts and ends slowly.
+View glided(const View& from, const View& to, double u);
+
 /// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
 class CameraControl {
  public:
@@ -51,7 +59,16 @@ class CameraControl {
   explicit CameraControl(const View& view) : view_(view) {}
 
   const View& view() const { return view_; }
-  void setView(const View& view) { view_ = view; }
+  void setView(const View& view) {
+    view_ = view;
+    glide_.reset();
+  }
+  /// Goes there within kGlideSeconds; what the hand does meanwhile stops it.
+  static constexpr double kGlideSeconds = 0.6;
+  void glideTo(const View& view) { glide_ = Glide{view_, view, 0.0}; }
+  bool gliding() const { return glide_.has_value(); }
+  /// `seconds` later.
+  void advance(double seconds);
   void resize(int width, int height);
 
   void press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
@@ -59,9 +76,14 @@ class CameraControl {
   void release() { drag_ = Drag::none; }
   /// Positive notches go nearer.
   void wheel(double notches, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
-  void fly(const FlyInput& input, double seconds) { view_ = flown(view_, input, seconds); }
+  void fly(const FlyInput& input, double seconds) { setView(flown(view_, input, seconds)); }
 
  private:
+  struct Glide {
+    View from, to;
+    double u = 0.0;
+  };
+  std::optional<Glide> glide_;
   View view_;
   Drag drag_ = Drag::none;
   glm::dvec2 cursor_{0.0};

@@ -176,5 +176,65 @@ TEST(CameraControl, ADragWithoutAPressDoesNothing) {
   EXPECT_EQ(control.view(), before);
 }
 
+TEST(CameraControl, WithoutPerspectiveTheTargetKeepsItsSizeThereAndBack) {
+  View view;
+  view.eye = {10, -30, 12};
+  view.target = {1, 2, 3};
+  const glm::dvec3 up = viewBasis(view).up;
+  const View flat = withOrthographic(view, true);
+  EXPECT_NEAR(glm::distance(pixelOf(view, view.target + 1e-4 * up), pixelOf(view, view.target)) /
+                  glm::distance(pixelOf(flat, view.target + 1e-4 * up), pixelOf(flat, view.target)),
+              1.0, 1e-4);
+  const View back = withOrthographic(flat, false);
+  EXPECT_LT(glm::distance(back.eye, view.eye), 1e-9);
+  EXPECT_FALSE(back.orthographic);
+}
+
+TEST(CameraControl, AGlideBeginsAndEndsWhereItShouldAndNeverComesNearerThanItsEnds) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> place(-50.0, 50.0);
+  for (int round = 0; round < 200; ++round) {
+    View a, b;
+    a.eye = {place(random), place(random), place(random)};
+    a.target = {place(random), place(random), place(random)};
+    b.eye = {place(random), place(random), place(random)};
+    b.target = round % 10 == 0 ? b.eye + (a.eye - a.target) : glm::dvec3(place(random), place(random), place(random));
+    EXPECT_LT(glm::distance(glided(a, b, 0.0).eye, a.eye), 1e-9);
+    EXPECT_EQ(glided(a, b, 1.0).eye, b.eye);
+    const double least = std::min(glm::distance(a.eye, a.target), glm::distance(b.eye, b.target));
+    for (double u = 0.0; u < 1.0; u += 0.05) {
+      const View now = glided(a, b, u);
+      EXPECT_GE(glm::distance(now.eye, now.target), least * (1.0 - 1e-9));
+    }
+  }
+}
+
+TEST(CameraControl, AGlideTakesItsTimeWhateverTheFrameRateAndAHandStopsIt) {
+  View there;
+  there.eye = {100, 100, 100};
+  for (const int frames : {3, 60, 1000}) {
+    CameraControl control{View{}};
+    control.glideTo(there);
+    for (int i = 0; i < frames; ++i) control.advance(CameraControl::kGlideSeconds / frames * 1.0001);
+    EXPECT_FALSE(control.gliding());
+    EXPECT_EQ(control.view().eye, there.eye);
+  }
+  CameraControl control{View{}};
+  control.glideTo(there);
+  control.advance(0.1);
+  control.press(CameraControl::Drag::orbit, {1, 1}, std::nullopt);
+  EXPECT_FALSE(control.gliding());
+}
+
+TEST(CameraControl, ADoubleClickBringsThePointToTheMiddle) {
+  View view;
+  view.eye = {10, -30, 12};
+  view.target = {1, 2, 3};
+  const glm::dvec3 point(4, 4, 1);
+  const View near = approached(view, point);
+  EXPECT_LT(glm::distance(pixelOf(near, point), glm::dvec2(0.5 * near.width, 0.5 * near.height)), 1e-6);
+  EXPECT_NEAR(glm::distance(near.eye, point), 0.4 * glm::distance(view.eye, point), 1e-9);
+}
+
 }  // namespace
 }  // namespace strata

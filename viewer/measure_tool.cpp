@@ -1,0 +1,36 @@
+#include "viewer/measure_tool.h"
+
+#include <algorithm>
+
+namespace strata {
+
+std::string MeasureTool::freeName(MeasureKind kind) const {
+  for (int number = 1;; ++number) {
+    const std::string name = std::string(measureName(kind)) + " " + std::to_string(number);
+    if (std::none_of(kept_.begin(), kept_.end(), [&](const Measurement& m) { return m.name == name; })) return name;
+  }
+}
+
+void MeasureTool::keepCurrent() {
+  if (current_ && current_->points.size() >= leastPoints(current_->kind)) kept_.push_back(std::move(*current_));
+  current_.reset();
+}
+
+void MeasureTool::begin(MeasureKind kind) {
+  keepCurrent();
+  current_ = Measurement{freeName(kind), kind, {}, true};
+}
+
+void MeasureTool::add(const glm::dvec3& point) {
+  if (!current_) return;
+  current_->points.push_back(point);
+  if (const MeasureKind kind = current_->kind; current_->points.size() == mostPoints(kind)) begin(kind);
+}
+
+void MeasureTool::undo() {
+  if (current_ && !current_->points.empty()) current_->points.pop_back();
+}
+
+void MeasureTool::finish() { keepCurrent(); }
+
+}  // namespace strata
