@@ -14,7 +14,7 @@ strata_packages=(
   liblz4-dev libxxhash-dev
   libpcl-dev
   libcli11-dev nlohmann-json3-dev libspdlog-dev libpng-dev
-  libgtest-dev libbenchmark-dev xvfb xauth
+  libgtest-dev libbenchmark-dev xdotool xvfb xauth
 )
 # Taken where the release has them: Mesa 25.1 dropped OSMesa.
 strata_optional_packages=(libosmesa6-dev)

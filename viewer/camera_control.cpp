@@ -38,6 +38,21 @@ glm::dvec2 pixelOf(const View& view, const glm::dvec3& point) {
   return glm::dvec2(glm::dot(p.rowX, d), glm::dot(p.rowY, d)) / glm::dot(p.rowW, d);
 }
 
+std::optional<std::pair<glm::dvec2, glm::dvec2>> segmentOnScreen(const View& view, glm::dvec3 a, glm::dvec3 b) {
+  const double depthA = depthOf(view, a);
+  const double depthB = depthOf(view, b);
+  const double least = std::max(view.nearPlane, 1e-9);
+  if (depthA < least && depthB < least) return std::nullopt;
+  // A little before the near plane: exactly on it, rounding could put an end behind the eye.
+  const double at = least * 1.0001;
+  const auto cut = [&](const glm::dvec3& behind, double depthBehind, const glm::dvec3& before, double depthBefore) {
+    return before + (behind - before) * ((depthBefore - at) / (depthBefore - depthBehind));
+  };
+  if (depthA < least) a = cut(a, depthA, b, depthB);
+  if (depthB < least) b = cut(b, depthB, a, depthOf(view, a));
+  return std::pair(pixelOf(view, a), pixelOf(view, b));
+}
+
 View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx) {
   const double perPixel = std::numbers::pi / std::max(view.width, 1);
   const glm::dvec3 up(0.0, 0.0, 1.0);
@@ -74,9 +89,13 @@ View zoomed(const View& view, const glm::dvec3& anchor, double factor) {
   return next;
 }
 
+double flySpeed(const View& view, bool fast) {
+  return kFlySpeed * glm::length(view.target - view.eye) * (fast ? kFastFactor : 1.0);
+}
+
 View flown(const View& view, const FlyInput& input, double seconds) {
   const ViewBasis basis = viewBasis(view);
-  const double speed = kFlySpeed * glm::length(view.target - view.eye) * (input.fast ? kFastFactor : 1.0);
+  const double speed = flySpeed(view, input.fast);
   const glm::dvec3 shift =
       (basis.forward * static_cast<double>(input.forward) + basis.right * static_cast<double>(input.right) +
        glm::dvec3(0.0, 0.0, 1.0) * static_cast<double>(input.up)) *

@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <utility>
 
 #include <glm/glm.hpp>
 
@@ -18,6 +19,9 @@ double depthOf(const View& view, const glm::dvec3& point);
 /// Where `point` appears. It has to lie before the eye.
 glm::dvec2 pixelOf(const View& view, const glm::dvec3& point);
 
+/// The part of the segment that lies before the near plane, as pixels; nothing where none does.
+std::optional<std::pair<glm::dvec2, glm::dvec2>> segmentOnScreen(const View& view, glm::dvec3 a, glm::dvec3 b);
+
 /// Turns around `pivot`: half a turn for a drag over the image's width. The distance to the pivot stays, the horizon
 /// stays level, and the camera never tips over.
 View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx);
@@ -35,6 +39,8 @@ struct FlyInput {
 };
 /// Moves eye and target. The speed is half the distance to the target in a second, five times that when fast: near
 /// things are passed slowly, and a zoom sets the pace.
+/// Metres a second.
+double flySpeed(const View& view, bool fast);
 View flown(const View& view, const FlyInput& input, double seconds);
 
 enum class StandardView { front, side, top };

@@ -22,44 +22,73 @@ void appendList(const RenderList& list, RenderList& merged) {
 }
 
 Layers::Layers(std::vector<std::shared_ptr<const Store>> stores, const StreamerOptions& options)
-    : stores_(std::move(stores)) {
+    : stores_(std::move(stores)), shown_(stores_.size(), true), selection_(options.selection) {
   StreamerOptions each = options;
   each.selection = shareOf(options.selection, stores_.size());
   each.cacheBytes = options.cacheBytes / std::max<std::size_t>(stores_.size(), 1);
   for (const auto& store : stores_) streamers_.push_back(std::make_unique<Streamer>(store, each));
 }
 
+void Layers::setShown(const std::vector<bool>& shown) {
+  shown_ = shown;
+  shown_.resize(stores_.size(), true);
+  setSelection(selection_);
+  setView(view_);
+}
+
 void Layers::setView(const View& view) {
-  for (const auto& streamer : streamers_) streamer->setView(view);
+  view_ = view;
+  for (std::size_t i = 0; i < streamers_.size(); ++i)
+    if (shown_[i]) streamers_[i]->setView(view);
 }
 
 void Layers::setSelection(const SelectionOptions& selection) {
-  for (const auto& streamer : streamers_) streamer->setSelection(shareOf(selection, stores_.size()));
+  selection_ = selection;
+  const auto drawn = static_cast<std::size_t>(std::count(shown_.begin(), shown_.end(), true));
+  for (std::size_t i = 0; i < streamers_.size(); ++i)
+    if (shown_[i]) streamers_[i]->setSelection(shareOf(selection, drawn));
 }
 
 const RenderList& Layers::beginFrame() {
-  if (streamers_.size() == 1) return streamers_.front()->beginFrame();
+  itemEnds_.clear();
+  if (streamers_.size() == 1 && shown_[0]) {
+    const RenderList& list = streamers_.front()->beginFrame();
+    itemEnds_.push_back(list.items.size());
+    return list;
+  }
   // Let go of the old nodes first: a streamer frees what it evicted only once nobody else holds it.
+  merged_.view = view_;
   merged_.items.clear();
   merged_.pointCount = 0;
   merged_.missingNodes = 0;
   merged_.serial = 0;
-  for (const auto& streamer : streamers_) appendList(streamer->beginFrame(), merged_);
+  for (std::size_t i = 0; i < streamers_.size(); ++i) {
+    if (shown_[i]) appendList(streamers_[i]->beginFrame(), merged_);
+    itemEnds_.push_back(merged_.items.size());
+  }
   return merged_;
 }
 
+const std::shared_ptr<const Store>& Layers::storeOfItem(std::size_t item) const {
+  const auto end = std::upper_bound(itemEnds_.begin(), itemEnds_.end(), item);
+  return stores_[std::min(static_cast<std::size_t>(end - itemEnds_.begin()), stores_.size() - 1)];
+}
+
 bool Layers::complete() const {
-  return std::all_of(streamers_.begin(), streamers_.end(), [](const auto& s) { return s->complete(); });
+  for (std::size_t i = 0; i < streamers_.size(); ++i)
+    if (shown_[i] && !streamers_[i]->complete()) return false;
+  return true;
 }
 
 bool Layers::waitUntilComplete(std::chrono::milliseconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   merged_.items.clear();
   bool whole = true;
-  for (const auto& streamer : streamers_) {
+  for (std::size_t i = 0; i < streamers_.size(); ++i) {
+    if (!shown_[i]) continue;
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    whole = streamer->waitUntilComplete(std::max(left, std::chrono::milliseconds(0))) && whole;
+    whole = streamers_[i]->waitUntilComplete(std::max(left, std::chrono::milliseconds(0))) && whole;
   }
   return whole;
 }

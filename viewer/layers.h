@@ -15,6 +15,10 @@ class Layers {
   /// The cache's bytes and the point budget of `options` are shared out evenly.
   Layers(std::vector<std::shared_ptr<const Store>> stores, const StreamerOptions& options);
 
+  /// Which stores are drawn; at first all. A hidden one is not walked, read or drawn, and leaves its share of the point
+  /// budget to the others; what it holds in memory stays, so that it is back at once.
+  void setShown(const std::vector<bool>& shown);
+
   void setView(const View& view);
   void setSelection(const SelectionOptions& selection);
   /// Valid until the next call of this or of waitUntilComplete().
@@ -23,12 +27,18 @@ class Layers {
   bool waitUntilComplete(std::chrono::milliseconds timeout);
 
   const std::vector<std::shared_ptr<const Store>>& stores() const { return stores_; }
+  /// The store that an item of the list came from which beginFrame() gave last.
+  const std::shared_ptr<const Store>& storeOfItem(std::size_t item) const;
   /// Summed over the layers; lodMs is the longest.
   StreamerStats stats() const;
 
  private:
   std::vector<std::shared_ptr<const Store>> stores_;
+  std::vector<bool> shown_;
+  SelectionOptions selection_;
+  View view_;
   RenderList merged_;
+  std::vector<std::size_t> itemEnds_;  ///< of each store's items in the newest list
   std::vector<std::unique_ptr<Streamer>> streamers_;
 };
 

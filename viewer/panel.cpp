@@ -53,6 +53,7 @@ void drawStats(const ViewerStats& stats) {
                               readableBytes(static_cast<double>(stats.streamer.residentBytes)));
   line("missing nodes", std::to_string(stats.missingNodes) + (stats.complete ? ", complete" : ", loading"));
   line("read", readableBytes(static_cast<double>(stats.streamer.bytesRead)));
+  line("fly speed", readableCount(stats.flySpeed) + " m/s");
   line("LOD pass", readableMs(stats.streamer.lodMs));
   if (stats.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(stats.draw.gpuBytes)));
   if (stats.streamer.failures > 0)
@@ -61,6 +62,47 @@ void drawStats(const ViewerStats& stats) {
 }
 
 }  // namespace
+
+void drawHelp(bool& open) {
+  if (!open) return;
+  constexpr const char* kKeys[][2] = {{"left drag", "orbit around the point under the cursor"},
+                                      {"right drag", "pan; the point stays under the cursor"},
+                                      {"wheel", "nearer to the point under the cursor, away"},
+                                      {"click", "coordinates and attributes of the point; a measurement's next point"},
+                                      {"double click", "go to the point"},
+                                      {"W A S D, E Q", "fly; shift: five times as fast"},
+                                      {"F", "show everything"},
+                                      {"1 3 7", "from the front, the side, the top"},
+                                      {"O", "with perspective, without"},
+                                      {"M", "measure a distance"},
+                                      {"Enter, Backspace, Escape", "measuring: keep, take back a point, drop"},
+                                      {"Control + S, Control + Q", "save the project, quit"},
+                                      {"H, F1", "this help"}};
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
+  if (ImGui::Begin("Keys and mouse", &open, ImGuiWindowFlags_AlwaysAutoResize))
+    for (const auto& key : kKeys) {
+      ImGui::TextUnformatted(key[0]);
+      ImGui::SameLine(190.0f);
+      ImGui::TextUnformatted(key[1]);
+    }
+  ImGui::End();
+}
+
+void drawError(std::string& text) {
+  if (text.empty()) return;
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, size.y - 24.0f), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(280.0f, 0.0f), ImVec2(0.8f * size.x, size.y));
+  if (ImGui::Begin("Something went wrong", nullptr,
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
+    ImGui::PushTextWrapPos(0.7f * size.x);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    if (ImGui::SmallButton("close")) text.clear();
+  }
+  ImGui::End();
+}
 
 bool drawPanel(ViewerSettings& settings, const ViewerStats& stats) {
   ImGui::SetNextWindowPos(ImVec2(12.0f, 12.0f), ImGuiCond_FirstUseEver);
@@ -77,8 +119,8 @@ bool drawPanel(ViewerSettings& settings, const ViewerStats& stats) {
     ImGui::Separator();
     drawStats(stats);
     ImGui::Separator();
-    ImGui::TextDisabled(
-        "left drag orbit, right drag pan, wheel zoom\nW A S D E Q fly, shift faster\nF all, 1 3 7 front side top");
+    if (!stats.notice.empty()) ImGui::TextWrapped("%s", stats.notice.c_str());
+    ImGui::TextDisabled("H shows what keys and mouse do");
   }
   ImGui::End();
   return changed;

@@ -5,13 +5,18 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/error.h"
 #include "core/image.h"
 #include "viewer/camera_control.h"
 #include "viewer/layers.h"
+#include "viewer/measure_panel.h"
 #include "viewer/panel.h"
+#include "viewer/point_lookup.h"
+#include "viewer/project.h"
 #include "viewer/scene.h"
 #include "viewer/screen.h"
 #include "viewer/stills.h"
+#include "viewer/text_file.h"
 #include "viewer/window.h"
 
 namespace strata {
@@ -20,6 +25,7 @@ namespace {
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot's full detail
 constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
 constexpr int kPanelFrames = 2;
+constexpr int kClickReach = 6;      // pixels beside a point that still mean it
 constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
 
 std::vector<std::shared_ptr<const Store>> openStores(const std::vector<std::string>& paths) {
@@ -46,10 +52,17 @@ std::string layerNames(const std::vector<std::string>& paths) {
   return names;
 }
 
+std::vector<std::string> namesOf(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) names.push_back(layerNames({path}));
+  return names;
+}
+
 class ViewerApp {
  public:
   explicit ViewerApp(const ViewerOptions& options)
-      : layers_(openStores(options.stores), options.streamer),
+      : options_(options),
+        layers_(openStores(options.stores), options.streamer),
         scene_(surveyAll(layers_.stores())),
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
                 options.screenshot.empty()),
@@ -63,6 +76,21 @@ class ViewerApp {
     stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
     stats_.layers = layerNames(options.stores);
     for (const auto& store : layers_.stores()) stats_.pointsInStores += store->info().points;
+    tools_.layers = namesOf(options.stores);
+    tools_.shown.assign(options.stores.size(), true);
+  }
+
+  /// Goes on where a session was left.
+  void restore(const Project& project) {
+    settings_.draw = project.draw;
+    settings_.selection.pointBudget = project.pointBudget;
+    settings_.selection.pointsPerPixel = project.pointsPerPixel;
+    tools_.shown = project.shown;
+    tools_.bookmarks = project.bookmarks;
+    tools_.measure.kept() = project.measurements;
+    control_.setView(project.view);
+    layers_.setSelection(settings_.selection);
+    layers_.setShown(tools_.shown);
   }
 
   void run() {
@@ -75,12 +103,13 @@ class ViewerApp {
         continue;
       }
       steer(input);
+      useTools(input);
       drawFrame(input.width, input.height);
-      const bool changed = drawPanel(settings_, stats_);
-      if (changed) layers_.setSelection(settings_.selection);
+      const bool changed = drawOver(input.width);
       window_.finishFrame();
       window_.present();
-      idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0;
+      idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0 && !control_.gliding() &&
+             !lookup_.pending();
     }
   }
 
@@ -94,7 +123,7 @@ class ViewerApp {
       layers_.setView(control_.view());
       layers_.waitUntilComplete(kLongestWait);
       drawFrame(input.width, input.height);
-      drawPanel(settings_, stats_);
+      drawOver(input.width);
       window_.finishFrame();
       uploading = stats_.draw.nodesNotUploaded > 0 && stats_.draw.bytesUploaded > 0;
     }
@@ -116,6 +145,7 @@ class ViewerApp {
 
   void steer(const WindowInput& input) {
     control_.resize(input.width, input.height);
+    control_.advance(input.seconds);
     if (input.leftPressed) control_.press(CameraControl::Drag::orbit, input.cursor, pointUnder(input.cursor));
     if (input.rightPressed) control_.press(CameraControl::Drag::pan, input.cursor, pointUnder(input.cursor));
     if (input.dragging) control_.move(input.cursor);
@@ -123,10 +153,40 @@ class ViewerApp {
     if (input.wheel != 0.0) control_.wheel(input.wheel, input.cursor, pointUnder(input.cursor));
     if (!input.fly.still()) control_.fly(input.fly, input.seconds);
     const View& view = control_.view();
-    if (input.frameAll) control_.setView(framed(view, scene_.bounds));
-    if (input.front) control_.setView(standardView(view, scene_.bounds, StandardView::front));
-    if (input.side) control_.setView(standardView(view, scene_.bounds, StandardView::side));
-    if (input.top) control_.setView(standardView(view, scene_.bounds, StandardView::top));
+    stats_.flySpeed = flySpeed(view, input.fly.fast);
+    if (input.frameAll) control_.glideTo(framed(view, scene_.bounds));
+    if (input.front) control_.glideTo(standardView(view, scene_.bounds, StandardView::front));
+    if (input.side) control_.glideTo(standardView(view, scene_.bounds, StandardView::side));
+    if (input.top) control_.glideTo(standardView(view, scene_.bounds, StandardView::top));
+    if (input.orthographic) control_.setView(withOrthographic(view, !view.orthographic));
+    if (input.doubleClicked)
+      if (const auto point = pointUnder(input.cursor)) control_.glideTo(approached(view, *point));
+  }
+
+  /// Clicks and keys of picking and measuring; the answers of the disk.
+  void useTools(const WindowInput& input) {
+    if (input.help) helpOpen_ = !helpOpen_;
+    if (input.measure) tools_.measure.begin(MeasureKind::distance);
+    if (input.keep) tools_.measure.finish();
+    if (input.takeBack) tools_.measure.undo();
+    if (input.drop) tools_.measure.cancel();
+    if (input.save) saveProject();
+    if (input.clicked && list_ != nullptr) {
+      if (const auto seen = drawnPointAt(*list_, frame_, input.cursor, kClickReach)) {
+        const std::shared_ptr<const NodeData>& node = list_->items[seen->item].node;
+        lookup_.ask(layers_.storeOfItem(seen->item), node->key, seen->point,
+                    pointUnder(input.cursor).value_or(node->origin));
+      }
+    }
+    if (const auto answer = lookup_.take()) {
+      if (!answer->error.empty()) {
+        stats_.error = answer->error;
+      } else {
+        tools_.picked = answer->point;
+        tools_.measure.add(answer->point.position);
+      }
+    }
+    tools_.lookingUp = lookup_.pending();
   }
 
   void drawFrame(int width, int height) {
@@ -134,6 +194,7 @@ class ViewerApp {
     const auto start = std::chrono::steady_clock::now();
     layers_.setView(control_.view());
     const RenderList& list = layers_.beginFrame();
+    list_ = &list;
     stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
     screen_.upload(frame_);
     window_.drawPicture(screen_.texture());
@@ -144,6 +205,43 @@ class ViewerApp {
     stats_.streamer = layers_.stats();
   }
 
+  /// Measurements, panels and messages. True when something was changed that the picture shows.
+  bool drawOver(int width) {
+    drawMeasurements(tools_.measure, control_.view(), tools_.picked);
+    const bool changed = drawPanel(settings_, stats_);
+    if (changed) layers_.setSelection(settings_.selection);
+    const ToolsRequest request = drawToolsPanel(tools_, width);
+    if (request.layersChanged) layers_.setShown(tools_.shown);
+    if (request.goTo) control_.glideTo(*request.goTo);
+    if (request.addBookmark)
+      tools_.bookmarks.push_back({"view " + std::to_string(tools_.bookmarks.size() + 1), control_.view()});
+    const std::vector<Measurement>& kept = tools_.measure.kept();
+    if (request.exportCsv) save(tools_.exportBase + ".csv", measurementsCsv(kept));
+    if (request.exportGeoJson)
+      save(tools_.exportBase + ".geojson", measurementsGeoJson(kept, layers_.stores().front()->info().crs));
+    if (request.saveProject) saveProject();
+    drawHelp(helpOpen_);
+    drawError(stats_.error);
+    return changed || request.layersChanged || request.goTo;
+  }
+
+  void save(const std::string& file, const std::string& text) {
+    try {
+      writeText(file, text);
+      stats_.notice = "saved " + file;
+    } catch (const Error& error) {
+      stats_.error = error.what();
+    }
+  }
+
+  void saveProject() {
+    const std::string file = options_.project.empty() ? tools_.layers.front() + ".project.json" : options_.project;
+    save(file, projectJson(file, {options_.stores, tools_.shown, control_.view(), settings_.draw,
+                                  settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
+                                  tools_.measure.kept()}));
+  }
+
+  const ViewerOptions options_;
   Layers layers_;
   const Scene scene_;
   Window window_;
@@ -152,13 +250,26 @@ class ViewerApp {
   CameraControl control_;
   ViewerSettings settings_;
   ViewerStats stats_;
+  ToolsState tools_;
+  PointLookup lookup_;
+  bool helpOpen_ = false;
+  const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
   Frame frame_;
 };
 
 }  // namespace
 
-void runViewer(const ViewerOptions& options) {
+void runViewer(const ViewerOptions& asked) {
+  ViewerOptions options = asked;
+  std::optional<Project> project;
+  if (options.stores.size() == 1 && options.stores.front().ends_with(".json") &&
+      std::filesystem::is_regular_file(options.stores.front())) {
+    options.project = options.stores.front();
+    project = parseProject(options.project, readText(options.project));
+    options.stores = project->stores;
+  }
   ViewerApp app(options);
+  if (project) app.restore(*project);
   if (options.screenshot.empty())
     app.run();
   else

@@ -14,6 +14,7 @@ namespace strata {
 /// The command line of strata-view.
 struct ViewerOptions {
   std::vector<std::string> stores;
+  std::string project;  ///< file; empty = none. Read where it exists, and saved to
   Backend backend = Backend::automatic;
   PictureSize size{1280, 800};
   StreamerOptions streamer;

@@ -12,7 +12,9 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   bool noEdl = false;
   CLI::App app{"Flies through stores.", "strata-view"};
   app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
-  app.add_option("stores", options.stores, "one or more stores, NAME.strata, shown as layers")->required();
+  app.add_option("stores", options.stores,
+                 "one or more stores, NAME.strata, shown as layers; or one project file, NAME.json")
+      ->required();
   app.add_option("--backend", backend, "cpu, compute32, points or auto")->capture_default_str();
   app.add_option("--size", size, "of the window, pixels")->capture_default_str();
   app.add_option("--point-budget", options.streamer.selection.pointBudget, "most points in a frame")

@@ -13,6 +13,7 @@
 namespace strata {
 namespace {
 
+constexpr float kClickPx = 4.0f;      // a button that goes up this near to where it went down has clicked
 constexpr double kLongestStep = 0.1;  // seconds a flight moves in one frame, however long the frame took
 
 Error windowError() {
@@ -39,6 +40,11 @@ GLFWwindow* openWindow(const std::string& title, int width, int height, bool vis
 ImGuiKey keyOf(int key) {
   if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
   if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return static_cast<ImGuiKey>(ImGuiKey_0 + (key - GLFW_KEY_0));
+  if (key == GLFW_KEY_ENTER) return ImGuiKey_Enter;
+  if (key == GLFW_KEY_KP_ENTER) return ImGuiKey_KeypadEnter;
+  if (key == GLFW_KEY_BACKSPACE) return ImGuiKey_Backspace;
+  if (key == GLFW_KEY_ESCAPE) return ImGuiKey_Escape;
+  if (key == GLFW_KEY_F1) return ImGuiKey_F1;
   if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
     return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + (key - GLFW_KEY_KP_0));
   return ImGuiKey_None;
@@ -55,6 +61,14 @@ void readKeys(WindowInput& input) {
   input.front = pressed(GLFW_KEY_1) || pressed(GLFW_KEY_KP_1);
   input.side = pressed(GLFW_KEY_3) || pressed(GLFW_KEY_KP_3);
   input.top = pressed(GLFW_KEY_7) || pressed(GLFW_KEY_KP_7);
+  input.orthographic = pressed(GLFW_KEY_O);
+  input.keep = pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER);
+  input.takeBack = pressed(GLFW_KEY_BACKSPACE);
+  input.drop = pressed(GLFW_KEY_ESCAPE);
+  input.save = ImGui::GetIO().KeyCtrl && pressed(GLFW_KEY_S);
+  input.measure = pressed(GLFW_KEY_M);
+  input.help = pressed(GLFW_KEY_H) || pressed(GLFW_KEY_F1);
+  if (ImGui::GetIO().KeyCtrl) return;  // no flying with a shortcut
   input.fly.forward = held(GLFW_KEY_W) - held(GLFW_KEY_S);
   input.fly.right = held(GLFW_KEY_D) - held(GLFW_KEY_A);
   input.fly.up = held(GLFW_KEY_E) - held(GLFW_KEY_Q);
@@ -120,8 +134,11 @@ WindowInput Window::beginFrame(double waitSeconds) {
     input.leftPressed = io.MouseClicked[0];
     input.rightPressed = io.MouseClicked[1];
     input.wheel = static_cast<double>(io.MouseWheel);
+    input.doubleClicked = io.MouseDoubleClicked[0];
+    input.clicked = io.MouseReleased[0] && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx;
   }
   if (!io.WantCaptureKeyboard) readKeys(input);
+  if (io.KeyCtrl && pressed(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
   return input;
 }
 

@@ -22,11 +22,19 @@ struct WindowInput {
   FlyInput fly;                                   ///< W A S D, E and Q for up and down, shift
   bool frameAll = false;                          ///< F
   bool front = false, side = false, top = false;  ///< 1, 3, 7
+  bool orthographic = false;                      ///< O: with perspective or without
+  bool clicked = false;                           ///< left button let go where it went down
+  bool doubleClicked = false;
+  bool keep = false, takeBack = false, drop = false;  ///< Enter, Backspace, Escape
+  bool save = false;                                  ///< Control + S
+  bool measure = false;                               ///< M: a distance
+  bool help = false;                                  ///< H or F1
 
   /// Nothing that changes the picture.
   bool idle() const {
     return !dragging && !leftPressed && !rightPressed && wheel == 0.0 && fly.still() && !frameAll && !front && !side &&
-           !top;
+           !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure &&
+           !help;
   }
 };
 

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/image.h"
@@ -83,6 +85,48 @@ TEST_F(Viewer, DrawsSeveralStoresAsLayers) {
 TEST_F(Viewer, AScreenshotThatCannotBeWrittenIsAnError) {
   if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
   EXPECT_EQ(viewInX({city().string(), "--size", "64x64", "--screenshot", "/nowhere/x.png"}).exitCode, 1);
+}
+
+TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitResizeSaveQuitAndReopen) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  if (!std::filesystem::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
+  const std::filesystem::path folder = file("session");
+  std::filesystem::create_directory(folder);
+  const Finished session =
+      runProgram(kXvfbRun, {"-a", "-s", "-screen 0 1024x768x24", STRATA_SOURCE_DIR "/tests/system/viewer_session.sh",
+                            programPath("strata-view").string(), city().string(), folder.string()});
+  ASSERT_EQ(session.exitCode, 0) << session.err;
+  const auto step = [&](const std::string& name) { return Json::parse(readWhole(folder / (name + ".project.json"))); };
+  EXPECT_TRUE(step("start").at("measurements").empty());
+  const Json measured = step("measured").at("measurements");
+  ASSERT_GE(measured.size(), 1u);
+  ASSERT_EQ(measured[0].at("points").size(), 2u);
+  // Points of the scan, not of the screen: on its grid of millimetres, to the last digit.
+  for (const Json& point : measured[0].at("points"))
+    for (const Json& coordinate : point) {
+      const double steps = coordinate.get<double>() * 1000.0;
+      EXPECT_NEAR(steps, std::round(steps), 1e-4);
+    }
+  EXPECT_NE(step("start").at("camera").at("eye"), step("orbited").at("camera").at("eye"));
+  EXPECT_EQ(step("resized").at("measurements"), measured);
+
+  // Reopened, the measurement is drawn where it was made.
+  const std::string png = file("reopened.png").string();
+  const Finished reopened = viewInX(
+      {(folder / "resized.project.json").string(), "--backend", "cpu", "--size", "800x600", "--screenshot", png});
+  ASSERT_EQ(reopened.exitCode, 0) << reopened.err;
+  const Image image = readPng(png);
+  const auto yellow = std::count_if(image.pixels.begin(), image.pixels.end(), [](std::uint32_t pixel) {
+    return (pixel & 0xff) > 240 && (pixel >> 8 & 0xff) > 180 && (pixel >> 8 & 0xff) < 210 && (pixel >> 16 & 0xff) < 20;
+  });
+  EXPECT_GT(yellow, 20);
+}
+
+TEST_F(Viewer, RefusesAProjectThatIsNoneInOneLine) {
+  std::ofstream(file("not.json")) << "{}";
+  const Finished finished = viewInX({file("not.json").string(), "--screenshot", file("not.png").string()});
+  EXPECT_EQ(finished.exitCode, 1);
+  EXPECT_NE(finished.err.find("is no project of strata-view"), std::string::npos) << finished.err;
 }
 
 TEST_F(Viewer, ARunComparedWithItselfIsNotWorseAndWithASlowedOneIs) {

@@ -236,5 +236,36 @@ TEST(CameraControl, ADoubleClickBringsThePointToTheMiddle) {
   EXPECT_NEAR(glm::distance(near.eye, point), 0.4 * glm::distance(view.eye, point), 1e-9);
 }
 
+TEST(CameraControl, ASegmentIsCutAtTheNearPlaneAndStaysOnItsLine) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> place(-30.0, 30.0);
+  int cut = 0;
+  for (int round = 0; round < 500; ++round) {
+    View view;
+    view.eye = {place(random), place(random), place(random)};
+    view.target = {place(random), place(random), place(random)};
+    const glm::dvec3 a(place(random), place(random), place(random)), b(place(random), place(random), place(random));
+    const bool before[2] = {depthOf(view, a) >= view.nearPlane, depthOf(view, b) >= view.nearPlane};
+    const auto segment = segmentOnScreen(view, a, b);
+    ASSERT_EQ(segment.has_value(), before[0] || before[1]);
+    if (!segment) continue;
+    if (before[0]) {
+      EXPECT_LT(glm::distance(segment->first, pixelOf(view, a)), 1e-6);
+    }
+    if (before[1]) {
+      EXPECT_LT(glm::distance(segment->second, pixelOf(view, b)), 1e-6);
+    }
+    if (before[0] == before[1]) continue;
+    ++cut;
+    // Another point of the visible part lies on the line on the screen too.
+    const glm::dvec3 inside = before[0] ? a + 1e-3 * (b - a) : b + 1e-3 * (a - b);
+    if (depthOf(view, inside) < view.nearPlane) continue;
+    const glm::dvec2 along = glm::normalize(segment->second - segment->first);
+    const glm::dvec2 off = pixelOf(view, inside) - segment->first;
+    EXPECT_NEAR(along.x * off.y - along.y * off.x, 0.0, 1e-3 * (1.0 + glm::length(off)));
+  }
+  EXPECT_GT(cut, 50);
+}
+
 }  // namespace
 }  // namespace strata
