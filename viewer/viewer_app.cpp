@@ -13,6 +13,7 @@
 #include "viewer/panel.h"
 #include "viewer/point_lookup.h"
 #include "viewer/project.h"
+#include "viewer/scan_conversion.h"
 #include "viewer/scene.h"
 #include "viewer/screen.h"
 #include "viewer/stills.h"
@@ -268,6 +269,7 @@ void runViewer(const ViewerOptions& asked) {
     project = parseProject(options.project, readText(options.project));
     options.stores = project->stores;
   }
+  if (!convertScans(options)) return;
   ViewerApp app(options);
   if (project) app.restore(*project);
   if (options.screenshot.empty())

@@ -21,6 +21,7 @@ struct ViewerOptions {
   std::optional<ColourMode> colour;
   int pointSize = 2;
   bool edl = true;
+  bool convert = false;    ///< scans are converted without asking
   std::string screenshot;  ///< file; draws one frame in full detail, window and all, and ends
 };
 

@@ -13,7 +13,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   CLI::App app{"Flies through stores.", "strata-view"};
   app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
   app.add_option("stores", options.stores,
-                 "one or more stores, NAME.strata, shown as layers; or one project file, NAME.json")
+                 "one or more stores, NAME.strata, shown as layers; scans, which are converted first; or a project")
       ->required();
   app.add_option("--backend", backend, "cpu, compute32, points or auto")->capture_default_str();
   app.add_option("--size", size, "of the window, pixels")->capture_default_str();
@@ -27,6 +27,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   app.add_option("--cache", options.streamer.cacheBytes, "memory for decoded nodes, such as 512M or 2G")
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--no-edl", noEdl, "without eye-dome lighting");
+  app.add_flag("--convert", options.convert, "convert scans that have no store beside them without asking");
   app.add_option("--screenshot", options.screenshot, "write one complete frame to this PNG and end");
   try {
     app.parse(argc, argv);

@@ -122,6 +122,29 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitResizeSaveQuitAndReopen) {
   EXPECT_GT(yellow, 20);
 }
 
+TEST_F(Viewer, ConvertsAScanBesideItselfAndOpensItAndTheNextTimeOpensThatStore) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  const std::string scan = file("walls.ply").string();
+  ASSERT_EQ(runProgram("strata-export", {room().string(), "-o", scan}).exitCode, 0);
+  for (const char* png : {"first.png", "second.png"}) {
+    const Finished finished =
+        viewInX({scan, "--convert", "--backend", "cpu", "--size", "320x240", "--screenshot", file(png).string()});
+    ASSERT_EQ(finished.exitCode, 0) << finished.err;
+    EXPECT_TRUE(std::filesystem::exists(file("walls.strata") / "store.json"));
+    EXPECT_EQ(readPng(file(png).string()).width, 320);
+  }
+}
+
+TEST_F(Viewer, AScanThatCannotBeConvertedIsRefusedInOneLine) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  std::ofstream(file("broken.las")) << "this is no LAS file";
+  const Finished finished =
+      viewInX({file("broken.las").string(), "--convert", "--screenshot", file("broken.png").string()});
+  EXPECT_EQ(finished.exitCode, 1);
+  EXPECT_NE(finished.err.find("broken.las"), std::string::npos) << finished.err;
+  EXPECT_FALSE(std::filesystem::exists(file("broken.strata")));
+}
+
 TEST_F(Viewer, RefusesAProjectThatIsNoneInOneLine) {
   std::ofstream(file("not.json")) << "{}";
   const Finished finished = viewInX({file("not.json").string(), "--screenshot", file("not.png").string()});
