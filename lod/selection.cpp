@@ -1,6 +1,7 @@
 #include "lod/selection.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -27,25 +28,23 @@ bool lessUrgent(const Selection::Candidate& a, const Selection::Candidate& b) {
   return a.selected.node > b.selected.node;
 }
 
-/// Square metres that one point of the whole node stands for.
-double areaPerPoint(const NodeRecord& record, const Contour& contour, double faceArea) {
-  const double spacing = static_cast<double>(record.spacing);
-  const bool known = std::isfinite(spacing) && spacing >= 0.0;
+/// Square metres that one point of the whole node stands for. What is thinner than a pixel still fills a pixel's
+/// width, so a wire gets a point for each pixel of its length.
+double areaPerPoint(const NodeRecord& record, const Contour& contour, const ContourOnScreen& screen) {
   if (record.contourClass == static_cast<std::uint8_t>(ContourClass::linear)) {
-    const double length = 2.0 * std::max({contour.half[0], contour.half[1], contour.half[2]});
-    const double step = known ? spacing : length / record.pointCount;
-    return step * step;
+    std::array<double, 3> half = contour.half;
+    std::sort(half.begin(), half.end());
+    return 2.0 * half[2] * std::max(2.0 * half[1], 1.0 / screen.pixelsPerMetre) / record.pointCount;
   }
-  const double byArea = faceArea / record.pointCount;
-  return known ? std::min(spacing * spacing, byArea) : byArea;
+  const double spacing = static_cast<double>(record.spacing);
+  const double byArea = screen.faceArea / record.pointCount;
+  return std::isfinite(spacing) && spacing >= 0.0 ? std::min(spacing * spacing, byArea) : byArea;
 }
 
 /// Points to draw of a node when `share` of the wanted density is to be reached; 0 = leave it out.
 std::uint32_t pointsAt(const Selection::Candidate& node, double share) {
   if (!node.root && share < 1.0 && !(share * static_cast<double>(node.selected.priority) > 1.0)) return 0;
-  const double wanted = share * node.wanted;
-  const double fraction = node.linear ? (std::sqrt(wanted) - std::sqrt(node.given)) * std::sqrt(node.areaPerPoint)
-                                      : (wanted - node.given) * node.areaPerPoint;
+  const double fraction = (share * node.wanted - node.given) * node.areaPerPoint;
   // Written so that what is not a number counts as nothing.
   const double points = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * node.pointCount;
   if (!node.root && node.leaf && points < 0.5) return 0;
@@ -102,10 +101,9 @@ class Walk {
     candidate.pointCount = record.pointCount;
     candidate.root = isRoot;
     candidate.leaf = record.childMask == 0;
-    candidate.linear = record.contourClass == static_cast<std::uint8_t>(ContourClass::linear);
     candidate.wanted = wanted;
     candidate.given = given;
-    if (record.pointCount > 0) candidate.areaPerPoint = areaPerPoint(record, contour, screen.faceArea);
+    if (record.pointCount > 0) candidate.areaPerPoint = areaPerPoint(record, contour, screen);
 
     SelectedNode& selected = candidate.selected;
     selected.node = node;

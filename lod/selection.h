@@ -42,7 +42,7 @@ struct Selection {
   struct Candidate {
     SelectedNode selected;
     std::uint32_t pointCount = 0;  ///< of the whole node
-    bool root = false, leaf = false, linear = false;
+    bool root = false, leaf = false;
     double wanted = 0.0;        ///< W of selectNodes(), points a square metre
     double given = 0.0;         ///< D
     double areaPerPoint = 0.0;  ///< σ²
@@ -61,10 +61,10 @@ struct Selection {
 ///   given       D = sum of 1/σ² over the ancestors
 ///   taken when  W > D;  points = N clamp((W - D) σ², 1/N, 1);  priority = W / D
 ///
-/// (linear nodes: the same along their length, N (√W - √D) σ.) The count is continuous in the view: a child enters
-/// with its first point. Where that is more than the budget, q is lowered until it is not: the whole picture gets
-/// thinner by the same share, instead of some nodes being drawn in full and their neighbours not at all. Pure; the same
-/// arguments give the same result on any machine with IEEE doubles. Never throws.
+/// (linear nodes: σ² = length * max(width, 1/p) / N, so that a wire gets its q p length points.) The count is
+/// continuous in the view: a child enters with its first point. Where that is more than the budget, q is lowered until
+/// it is not: the whole picture gets thinner by the same share, instead of some nodes being drawn in full and their
+/// neighbours not at all. Pure; the same arguments give the same result on any machine with IEEE doubles. Never throws.
 ///
 /// `reach` is HierarchyIndex::reach, or empty for stores whose contours hold everything below them. `depth`, where
 /// there is one, is of the same view: what it hides is left out, and all below it.

@@ -104,6 +104,22 @@ TEST(Selection, GivesALineAPointForEachPixelOfItsLength) {
   EXPECT_NEAR(static_cast<double>(select(wire, view).pointCount), lengthPx, 0.05 * lengthPx);
 }
 
+TEST(Selection, CountsALongStripAsAnAreaWhateverItsSpacingSays) {
+  // A road of 400 m by 40 m is linear by Kanzok's thresholds; its points lie 0.5 m apart, not in one row.
+  Hierarchy road = oneBox({200, 20, 1}, 64'000, ContourClass::linear, 400.0f / 64'000);
+  road.nodes[0].childMask = 1;
+  road.nodes[0].firstChild = 1;
+  NodeRecord child = road.nodes[0];
+  child.key = 8;
+  child.childMask = 0;
+  road.nodes.push_back(child);
+  View view = from({0, 0, 100});
+  view.up = {0, 1, 0};
+  const Selection selection = select(road, view);
+  EXPECT_EQ(selection.nodes.size(), 2u);
+  EXPECT_EQ(selection.pointCount, 128'000u);
+}
+
 TEST(Selection, HoldsTheBudgetExactlyAndSaysSo) {
   const Terrain terrain = makeTerrain({.levels = 6}, false);
   const View view = viewOfTerrain(terrain.info, 0.5, 0.3, 100.0);
