@@ -30,7 +30,8 @@ namespace {
 
 constexpr int kWidth = 1920, kHeight = 1080;
 constexpr const char* kViewNames[] = {"overview", "close", "detail"};
-constexpr std::uint64_t kBudgets[] = {250'000, 500'000, 1'000'000, 2'000'000, 4'000'000};
+constexpr std::uint64_t kBudgets[] = {250'000, 1'000'000, 4'000'000};
+constexpr std::uint64_t kShownBudget = 1'000'000;  ///< of the pictures
 constexpr double kWantedCover = 0.98;
 constexpr int kLargestClosing = 12;  ///< pixels, side of the points that close the gaps
 
@@ -215,11 +216,11 @@ void compare(const std::string& out, const std::string& referenceStore, const st
         const Frame& frame = pictures.draw(1);
         const PictureQuality thin = pictureQuality(references[v], frame);
         const std::string name = out + "/" + kViewNames[v] + "_" + label + "_" + std::to_string(budget / 1000) + "k";
-        writePng(name + ".png", {frame.width, frame.height, frame.colour});
+        if (budget == kShownBudget) writePng(name + ".png", {frame.width, frame.height, frame.colour});
         int size = 1;
         const Frame& closed = drawClosed(pictures, references[v], size);
         const PictureQuality filled = pictureQuality(references[v], closed);
-        writePng(name + "_closed.png", {closed.width, closed.height, closed.colour});
+        if (budget == kShownBudget) writePng(name + "_closed.png", {closed.width, closed.height, closed.colour});
         table << label << '\t' << kViewNames[v] << '\t' << budget << '\t' << points << '\t' << thin.covered << '\t'
               << thin.psnr << '\t' << thin.ssim << '\t' << size << '\t' << filled.psnr << '\t' << filled.ssim
               << std::endl;
@@ -243,7 +244,7 @@ void coverage(const std::string& out, const std::vector<std::string>& scans) {
     const std::vector<MeanPicture> references = picturesOfAllPoints(pictures.store(), views);
     for (std::size_t v = 0; v < views.size(); ++v) {
       ChartLine line{scans[scan] + " " + kViewNames[v], {}, {}};
-      for (const double density : {0.25, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 1.7, 2.0, 2.4, 2.8, 3.4, 4.0}) {
+      for (const double density : {0.25, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.4, 2.8, 3.4, 4.0}) {
         SelectionOptions options;
         options.pointBudget = SelectionOptions::kMaxPointBudget;
         options.pointsPerPixel = density;

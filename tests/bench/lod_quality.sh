@@ -22,7 +22,7 @@ for scan in red_rocks city; do
     for colour in first average; do
       store=$folder/${scan}_${sampling}_$colour.strata
       convert "$input" "$store" --sampling $sampling --lod-colour $colour
-      stores+=("$sampling/$colour=$store")
+      stores+=("${sampling}_$colour=$store")
     done
   done
   reference=$folder/${scan}_ntree_first.strata

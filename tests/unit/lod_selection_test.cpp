@@ -16,7 +16,9 @@ using test::Terrain;
 using test::TerrainOptions;
 using test::viewOfTerrain;
 
-Selection select(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options = {}) {
+/// One point a pixel unless told, for plain numbers.
+Selection select(const Hierarchy& hierarchy, const View& view,
+                 const SelectionOptions& options = {.pointsPerPixel = 1.0}) {
   Selection selection;
   selectNodes(hierarchy, view, options, selection);
   return selection;
@@ -56,7 +58,7 @@ TEST(Selection, IsEmptyWhenLookingAway) {
 TEST(Selection, IsEveryWholeNodeWhenAllIsInViewAndEverythingIsAskedFor) {
   const Terrain terrain = makeTerrain({}, false);
   const View view = viewOfBox(terrain.info.rootCube(), {0.2, 0.3, -1.0}, 1920, 1080, 1.0);
-  SelectionOptions options;
+  SelectionOptions options{.pointsPerPixel = 1.0};
   options.pointsPerPixel = 1e9;
   options.pointBudget = SelectionOptions::kMaxPointBudget;
   const Selection selection = select(terrain.hierarchy, view, options);
@@ -79,7 +81,7 @@ TEST(Selection, GivesAsManyPointsAsPixelsToAWallThatIsSeenFaceOn) {
   const View view = from({0, -50, 0});
   const double sidePx = pixelsAt(view, 20.0, 50.0);
   EXPECT_NEAR(static_cast<double>(select(wall, view).pointCount), sidePx * sidePx, 0.01 * sidePx * sidePx);
-  SelectionOptions half;
+  SelectionOptions half{.pointsPerPixel = 1.0};
   half.pointsPerPixel = 0.5;
   EXPECT_NEAR(static_cast<double>(select(wall, view, half).pointCount), 0.5 * sidePx * sidePx, 0.01 * sidePx * sidePx);
 }
@@ -127,13 +129,13 @@ TEST(Selection, HoldsTheBudgetExactlyAndSaysSo) {
   ASSERT_GT(free.pointCount, 5000u);
   EXPECT_FALSE(free.budgetReached);
   for (const std::uint64_t budget : {std::uint64_t{1}, std::uint64_t{777}, free.pointCount - 1}) {
-    SelectionOptions options;
+    SelectionOptions options{.pointsPerPixel = 1.0};
     options.pointBudget = budget;
     const Selection cut = select(terrain.hierarchy, view, options);
     EXPECT_EQ(cut.pointCount, budget);
     EXPECT_TRUE(cut.budgetReached);
   }
-  SelectionOptions none;
+  SelectionOptions none{.pointsPerPixel = 1.0};
   none.pointBudget = 0;
   EXPECT_TRUE(select(terrain.hierarchy, view, none).nodes.empty());
 }
@@ -141,13 +143,13 @@ TEST(Selection, HoldsTheBudgetExactlyAndSaysSo) {
 TEST(Selection, UnderABudgetIsThatOfALowerDensity) {
   const Terrain terrain = makeTerrain({.levels = 6}, false);
   const View view = viewOfTerrain(terrain.info, 0.5, 0.3, 100.0);
-  SelectionOptions options;
+  SelectionOptions options{.pointsPerPixel = 1.0};
   options.pointsPerPixel = 8.0;
   options.pointBudget = select(terrain.hierarchy, view, options).pointCount / 3;
   const Selection cut = select(terrain.hierarchy, view, options);
   ASSERT_LT(cut.pointsPerPixel, options.pointsPerPixel);
 
-  SelectionOptions thinner;
+  SelectionOptions thinner{.pointsPerPixel = 1.0};
   thinner.pointsPerPixel = cut.pointsPerPixel;
   const Selection thin = select(terrain.hierarchy, view, thinner);
   ASSERT_EQ(cut.nodes.size(), thin.nodes.size());
@@ -163,7 +165,7 @@ TEST(Selection, UnderABudgetIsThatOfALowerDensity) {
 TEST(Selection, ChangesLittleWhenTheBudgetDoes) {
   const Terrain terrain = makeTerrain({.levels = 6}, false);
   const View view = viewOfTerrain(terrain.info, 0.5, 0.3, 100.0);
-  SelectionOptions options;
+  SelectionOptions options{.pointsPerPixel = 1.0};
   options.pointsPerPixel = 16.0;
   const std::uint64_t most = select(terrain.hierarchy, view, options).pointCount;
   const std::uint32_t whole = terrain.hierarchy.nodes[0].pointCount;
