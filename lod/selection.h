@@ -11,7 +11,7 @@
 namespace strata {
 
 struct SelectionOptions {
-  double pointsPerPixel = 1.7;  ///< wanted density on the screen, for one layer of surface; docs/lod.md says why
+  double pointsPerPixel = 1.8;  ///< wanted density on the screen, for one layer of surface; docs/lod.md says why
   std::uint64_t pointBudget = 10'000'000;  ///< never more points than this; kMaxPointBudget at most
   double minimumPixels = 1.0;              ///< nodes whose longest side is shorter than this are left to their parents
 
