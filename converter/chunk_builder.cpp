@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "converter/lod_colour.h"
+#include "converter/slices.h"
 
 namespace strata {
 namespace {
@@ -69,7 +71,7 @@ class ChunkBuilder {
 
   BuiltChunk build() {
     BuiltChunk out;
-    const Own own = takeOwn(cell_, 0, 0, taken_.size());
+    Own own = takeOwn(cell_, 0, 0, taken_.size());
     out.topPoints = topPoints(own);
     out.topChildren = buildChildren(cell_, 0, own, out.nodes);
     return out;
@@ -81,7 +83,9 @@ class ChunkBuilder {
     LevelOrder levels;
     std::vector<std::uint32_t> records;
     std::vector<Represented> represented;  ///< where colours are averaged and there are children
-    std::array<std::size_t, 9> octants{};  ///< all alike: no children
+    std::array<std::size_t, 9> octants{};  ///< all alike: no children but slices
+    std::vector<BuiltNode> slices;
+    std::vector<SubtreeShape> sliceShape;  ///< none, or of the first slice
   };
 
   std::vector<std::byte> topPoints(const Own& own) const {
@@ -124,6 +128,7 @@ class ChunkBuilder {
   Own takeOwn(NodeKey key, int side, std::size_t begin, std::size_t end) {
     Own own;
     const bool split = canSplit(key, begin, end, side);
+    if (!split && end - begin > SliceBuilder::kMostSlicePoints) begin = takeSlices(key, side, begin, end, own);
     own.levels = sampleNode(frame_.sampling, localPoints(side, begin, end),
                             split ? frame_.info.nodePoints : LevelOrder::kAll, scratch_);
     own.records.resize(own.levels.order.size());
@@ -135,6 +140,21 @@ class ChunkBuilder {
     own.octants.fill(begin);
     if (split) moveRest(side, begin, end, childBit(key), own);
     return own;
+  }
+
+  /// Makes slices of what is too many for a cell that cannot be divided; returns where the node's own points begin.
+  std::size_t takeSlices(NodeKey key, int side, std::size_t begin, std::size_t end, Own& own) {
+    constexpr std::size_t kMost = SliceBuilder::kMostSlicePoints;
+    const std::size_t stride = frame_.format.stride();
+    SliceBuilder builder(frame_, key, end - begin);
+    std::vector<std::byte> packed(kMost * stride);
+    for (; end - begin > kMost; begin += kMost) {
+      for (std::size_t i = 0; i < kMost; ++i)
+        std::memcpy(packed.data() + i * stride, records_.data() + columns_[side].record[begin + i] * stride, stride);
+      for (BuiltNode& slice : builder.add(packed)) own.slices.push_back(std::move(slice));
+    }
+    own.sliceShape = builder.takeTopChildren();
+    return begin;
   }
 
   void moveRest(int side, std::size_t begin, std::size_t end, int bit, Own& own) {
@@ -156,8 +176,9 @@ class ChunkBuilder {
     }
   }
 
-  std::vector<SubtreeShape> buildChildren(NodeKey parent, int side, const Own& own, std::vector<BuiltNode>& nodes) {
-    std::vector<SubtreeShape> shapes;
+  std::vector<SubtreeShape> buildChildren(NodeKey parent, int side, Own& own, std::vector<BuiltNode>& nodes) {
+    std::move(own.slices.begin(), own.slices.end(), std::back_inserter(nodes));
+    std::vector<SubtreeShape> shapes = own.sliceShape;
     for (int octant = 0; octant < 8; ++octant) {
       const auto o = static_cast<std::size_t>(octant);
       if (own.octants[o] == own.octants[o + 1]) continue;
@@ -169,11 +190,13 @@ class ChunkBuilder {
   SubtreeShape buildNode(NodeKey key, int side, std::size_t begin, std::size_t end, std::vector<BuiltNode>& nodes) {
     const std::size_t place = nodes.size();
     nodes.emplace_back();
-    const Own own = takeOwn(key, side, begin, end);
+    Own own = takeOwn(key, side, begin, end);
     const std::vector<SubtreeShape> children = buildChildren(key, side, own, nodes);
     NodePoints points = gather(frame_, records_, frame_.format.stride(), own.records);
     for (const Represented& one : own.represented) points.drawColours.push_back(one.colour);
-    FinishedNode finished = finishNode(frame_, key, points, own.levels, cellFrame_.world(own.levels.moments), children);
+    Moments moments = cellFrame_.world(own.levels.moments);
+    for (const SubtreeShape& slice : own.sliceShape) moments.add(slice.moments);
+    FinishedNode finished = finishNode(frame_, key, std::move(points), own.levels, moments, children);
     nodes[place] = std::move(finished.node);
     return finished.shape;
   }

@@ -231,7 +231,7 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   const Hierarchy hierarchy = sink.finish();
   StoreInfo info = frame.info;
   info.nodes = hierarchy.nodes.size();
-  info.levels = NodeKey{hierarchy.nodes.back().key}.level() + 1;
+  for (const NodeRecord& node : hierarchy.nodes) info.levels = std::max(info.levels, NodeKey{node.key}.level() + 1);
   writeStoreFiles(folder.path(), info, hierarchy, sink.bytes());
   folder.publish();
   clock.end();

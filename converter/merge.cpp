@@ -51,7 +51,7 @@ class Merger {
     if (frame_.averages() && !node.children.empty())
       for (const std::uint32_t i : levels.order)
         points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);
-    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children);
+    FinishedNode finished = finishNode(frame_, node.key, std::move(points), levels, moments, node.children);
     std::vector<BuiltNode> one;
     one.push_back(std::move(finished.node));
     sink_.write(std::move(one));

@@ -64,8 +64,9 @@ NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, s
 
 FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,
                         const Moments& moments, std::span<const SubtreeShape> children) {
-  points.levels = levels.prefix;
-  EncodedNode encoded = encodeNode(points, frame.info);
+  if (frame.sampling == Sampling::ntree) points.levels = levels.prefix;  // the others keep their order, to be measured
+  thread_local EncodeScratch scratch;  // a few megabytes that would be new pages for every node
+  EncodedNode encoded = encodeNode(points, frame.info, scratch);
   FinishedNode out;
   out.shape = fitShape(frame, points, moments, children);
   NodeRecord& record = out.node.record;

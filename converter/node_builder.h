@@ -46,7 +46,7 @@ struct CellFrame {
 
 /// A node ready to be written.
 struct BuiltNode {
-  NodeRecord record{};  ///< all but firstChild, childMask and offset
+  NodeRecord record{};  ///< all but firstChild, childMask and offset; of a slice, firstChild is its number until linked
   std::vector<std::byte> payload;
 };
 

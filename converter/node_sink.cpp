@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "io/store_files.h"
 
@@ -10,15 +11,37 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{8} << 20;
 
-/// Keys with their leading 1 sort by level, then in Morton order: breadth first. Children of a node are neighbours.
+/// Number of a record in its chain of slices; 0 for ordinary nodes.
+std::uint32_t sliceNumber(const NodeRecord& record) { return record.firstChild; }
+
+/// A slice is a level below what it continues.
+int depthOf(const NodeRecord& record) { return NodeKey{record.key}.level() + static_cast<int>(sliceNumber(record)); }
+
+/// Breadth first: by depth, then by the cell's lower corner in Morton order, which cells of one depth never share.
+bool standsBefore(const NodeRecord& a, const NodeRecord& b) {
+  const int depthA = depthOf(a), depthB = depthOf(b);
+  if (depthA != depthB) return depthA < depthB;
+  const auto corner = [](const NodeRecord& record) {
+    const int level = NodeKey{record.key}.level();
+    return (record.key ^ std::uint64_t{1} << (3 * level)) << (3 * (NodeKey::kDeepestLevel - level));
+  };
+  return corner(a) < corner(b);
+}
+
+/// Puts the records in breadth-first order, so that the children of a node are neighbours.
 Hierarchy linkBreadthFirst(std::vector<NodeRecord> records) {
-  std::sort(records.begin(), records.end(), [](const NodeRecord& a, const NodeRecord& b) { return a.key < b.key; });
+  std::sort(records.begin(), records.end(), standsBefore);
+  std::vector<std::uint32_t> slices(records.size());
+  for (std::size_t i = 0; i < records.size(); ++i) slices[i] = std::exchange(records[i].firstChild, 0);
   std::size_t parent = 0;
   for (std::size_t i = 1; i < records.size(); ++i) {
-    const std::uint64_t parentKey = records[i].key >> 3;
-    while (records[parent].key != parentKey) ++parent;
+    const bool slice = slices[i] > 0;
+    const std::uint64_t parentKey = slice ? records[i].key : records[i].key >> 3;
+    while (records[parent].key != parentKey || slices[parent] != (slice ? slices[i] - 1 : 0)) ++parent;
     if (records[parent].childMask == 0) records[parent].firstChild = static_cast<std::uint32_t>(i);
-    records[parent].childMask = static_cast<std::uint8_t>(records[parent].childMask | 1u << (records[i].key & 7));
+    const auto octant = static_cast<unsigned>(slice ? 0 : records[i].key & 7);
+    records[parent].childMask = static_cast<std::uint8_t>(records[parent].childMask | 1u << octant);
+    records[parent].sliced = slice ? 1 : 0;
   }
   return {std::move(records)};
 }

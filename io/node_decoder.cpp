@@ -57,9 +57,11 @@ class PayloadReader {
       if (offset > payload_.size() || p.storedBytes > payload_.size() - offset) fail("truncated plane");
       const std::span<const std::byte> stored = payload_.subspan(offset, p.storedBytes);
       if (checksum(stored) != p.checksum) fail("block checksum mismatch");
+      const auto encoding = static_cast<PlaneEncoding>(p.encoding);
+      if (payload_.size() - offset - stored.size() >= kBitSlack) return {encoding, stored};
       stored_.resize(stored.size() + kBitSlack);
       std::copy(stored.begin(), stored.end(), stored_.begin());
-      return {static_cast<PlaneEncoding>(p.encoding), std::span(stored_).first(stored.size())};
+      return {encoding, std::span(stored_).first(stored.size())};
     }
     fail("plane " + std::to_string(id) + " is missing");
   }
@@ -108,6 +110,17 @@ std::vector<Lanes> finerPositions(PayloadReader& payload, int plane) {
   const FieldWidths widths = planeWidths(payload.head(), plane);
   std::vector<Lanes> out(payload.pointCount());
   BitReader reader(stored.data());
+  if (std::max({widths.axis[0], widths.axis[1], widths.axis[2]}) <= 10) {
+    const int left[3] = {10 - widths.axis[0], 20 - widths.axis[1], 30 - widths.axis[2]};
+    const std::uint32_t mask[3] = {(1u << widths.axis[0]) - 1, (1u << widths.axis[1]) - 1, (1u << widths.axis[2]) - 1};
+    const int second = widths.axis[0], third = widths.axis[0] + widths.axis[1], sum = widths.sum();
+    for (Lanes& point : out) {
+      const auto fields = static_cast<std::uint32_t>(reader.get(sum));
+      point = (fields & mask[0]) << left[0] | (fields >> second & mask[1]) << left[1] |
+              (fields >> third & mask[2]) << left[2];
+    }
+    return out;
+  }
   for (Lanes& point : out) {
     Lanes lanes = 0;
     for (int axis = 0; axis < 3; ++axis) {

@@ -36,6 +36,9 @@ namespace {
 
 using Buffers = EncodeScratch::Buffers;
 
+/// The memory for more points than this is given back at once.
+constexpr std::size_t kPointsToRemember = 1u << 18;
+
 /// Bounds, and the octree level where each axis starts to be halved: the longest at 0, so that cells are nearly cubes.
 PayloadHead describe(const NodePoints& points, const StoreInfo& info) {
   PayloadHead head{};
@@ -312,7 +315,9 @@ EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info, EncodeSc
   if (points.count() > kMaxNodePoints)
     throw Error("points.bin", "a node has too many points, found " + std::to_string(points.count()) +
                                   " (expected at most " + std::to_string(kMaxNodePoints) + ")");
-  return NodeWriter(points, info, scratch.buffers()).encode();
+  EncodedNode node = NodeWriter(points, info, scratch.buffers()).encode();
+  if (points.count() > kPointsToRemember) scratch.buffers() = {};
+  return node;
 }
 
 EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info) {

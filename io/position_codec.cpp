@@ -38,29 +38,32 @@ int emptyBits(const PayloadHead& head, int axis, int depth) {
 
 /// How the lanes of a cell and the fields of a point become 10 bits an axis.
 struct Assembly {
-  int width[3], cellRight[3], cellLeft[3], fieldLeft[3];
+  struct Axis {
+    int cellRight = 0, cellLeft = 0, fieldRight = 0, fieldLeft = 0;
+    std::uint32_t fieldMask = 0;
+  };
+  Axis axis[3];
   int sum = 0;
 
   Assembly(const PayloadHead& head, int depth) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const int bits = planeBits(head.bits[axis], 0);
-      width[axis] = bits - octreeBits(head, axis, depth);
-      cellRight[axis] = emptyBits(head, axis, depth);
-      fieldLeft[axis] = 10 - bits;
-      cellLeft[axis] = width[axis] + fieldLeft[axis];
-      sum += width[axis];
+    for (int a = 0; a < 3; ++a) {
+      const int bits = planeBits(head.bits[a], 0);
+      const int width = bits - octreeBits(head, a, depth);
+      axis[a] = {10 * a + emptyBits(head, a, depth), width + 10 - bits, sum, 10 - bits, (1u << width) - 1};
+      sum += width;
     }
   }
-  Lanes operator()(Lanes cell, std::uint64_t fields) const {
+  /// A cell's part of its points.
+  Lanes high(Lanes cell) const {
     Lanes out = 0;
-    int at = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::uint32_t high = (cell >> (10 * axis) & 1023u) >> cellRight[axis] << cellLeft[axis];
-      const auto low = static_cast<std::uint32_t>(fields >> at & ((1u << width[axis]) - 1));
-      out |= lane(high | low << fieldLeft[axis], axis);
-      at += width[axis];
-    }
+    for (int a = 0; a < 3; ++a)
+      out |= lane((cell >> axis[a].cellRight & (1023u >> (axis[a].cellRight - 10 * a))) << axis[a].cellLeft, a);
     return out;
+  }
+  Lanes low(std::uint32_t fields) const {
+    return lane((fields >> axis[0].fieldRight & axis[0].fieldMask) << axis[0].fieldLeft, 0) |
+           lane((fields >> axis[1].fieldRight & axis[1].fieldMask) << axis[1].fieldLeft, 1) |
+           lane((fields >> axis[2].fieldRight & axis[2].fieldMask) << axis[2].fieldLeft, 2);
   }
 };
 
@@ -90,15 +93,16 @@ bool expandCells(std::span<const std::uint8_t>& occupancy, int depth, std::size_
 }
 
 /// Puts cells, flags and fields of one level together.
-bool assembleLevel(const Assembly& assembly, const std::vector<Lanes>& cells, const std::vector<std::uint8_t>& flags,
+bool assembleLevel(const Assembly& assembly, std::vector<Lanes>& cells, const std::vector<std::uint8_t>& flags,
                    std::size_t firstPoint, const std::byte* fields, std::span<Lanes> out) {
+  for (Lanes& cell : cells) cell = assembly.high(cell);
   BitReader reader(fields);
   std::size_t cell = ~std::size_t{0};
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::size_t at = firstPoint + i;
     cell += flags[at >> 3] >> (at & 7) & 1u;
     if (cell >= cells.size()) return false;
-    out[i] = assembly(cells[cell], reader.get(assembly.sum));
+    out[i] = cells[cell] | assembly.low(static_cast<std::uint32_t>(reader.get(assembly.sum)));
   }
   return cell + 1 == cells.size();
 }
@@ -216,7 +220,7 @@ bool decodePacked(const PayloadHead& head, std::span<const std::byte> stored, st
   const Assembly assembly(head, 0);
   if (stored.size() != packedBytes(out.size(), assembly.sum)) return false;
   BitReader reader(stored.data());
-  for (Lanes& point : out) point = assembly(0, reader.get(assembly.sum));
+  for (Lanes& point : out) point = assembly.low(static_cast<std::uint32_t>(reader.get(assembly.sum)));
   return true;
 }
 

@@ -112,12 +112,13 @@ void checkHierarchy(const std::string& file, const Hierarchy& hierarchy, std::ui
       const int children = std::popcount(n.childMask);
       if (nextChild + static_cast<std::uint64_t>(children) > nodes.size())
         fail(n, "has a child beyond the last record");
-      for (int k = 0; k < children; ++k)
-        if (nodes[nextChild + static_cast<std::uint64_t>(k)].key !=
-            NodeKey{n.key}.child(childOctant(n.childMask, k)).code)
-          fail(n, "has a child with another key");
+      for (int k = 0; k < children; ++k) {
+        const std::uint64_t key = n.sliced == 1 ? n.key : NodeKey{n.key}.child(childOctant(n.childMask, k)).code;
+        if (nodes[nextChild + static_cast<std::uint64_t>(k)].key != key) fail(n, "has a child with another key");
+      }
       nextChild += static_cast<std::uint64_t>(children);
     }
+    if (n.sliced > 1 || (n.sliced == 1 && n.childMask != 1)) fail(n, "has slices that are not its only child");
     if (NodeKey{n.key}.level() > NodeKey::kDeepestLevel) fail(n, "is deeper than level 20");
     if (n.prefixes == 0 || n.prefixes > NodeRecord::kMaxPrefixes || n.prefix[n.prefixes - 1] != n.pointCount)
       fail(n, "prefix counts do not end at the point count");

@@ -70,12 +70,12 @@ enum class ContourClass : std::uint8_t { volumetric = 0, planar = 1, linear = 2 
 struct NodeRecord {
   static constexpr int kMaxPrefixes = 16;
 
-  std::uint64_t key;          ///< NodeKey::code
-  std::uint32_t firstChild;   ///< index of the first child's record; 0 = none
-  std::uint8_t childMask;     ///< bit i: octant i has a child
-  std::uint8_t contourClass;  ///< ContourClass
-  std::uint8_t prefixes;      ///< used entries of `prefix`
-  std::uint8_t reserved;
+  std::uint64_t key;                   ///< NodeKey::code
+  std::uint32_t firstChild;            ///< index of the first child's record; 0 = none
+  std::uint8_t childMask;              ///< bit i: octant i has a child
+  std::uint8_t contourClass;           ///< ContourClass
+  std::uint8_t prefixes;               ///< used entries of `prefix`
+  std::uint8_t sliced;                 ///< 1: the only child is a slice, more points of the same cell
   std::uint32_t pointCount;            ///< points kept in this node itself
   float spacing;                       ///< metres between neighbouring points when the whole node is drawn
   double centre[3];                    ///< of the contour, world

@@ -128,7 +128,7 @@ LocalNode localNode(const Store& store, const glm::dvec3& place) {
     const NodeRecord& node = nodes[local.index];
     const glm::dvec3 middle = cube.centre();
     const int octant = (place.x >= middle.x ? 4 : 0) + (place.y >= middle.y ? 2 : 0) + (place.z >= middle.z ? 1 : 0);
-    if (node.firstChild == 0 || (node.childMask >> octant & 1) == 0) return local;
+    if (node.firstChild == 0 || node.sliced != 0 || (node.childMask >> octant & 1) == 0) return local;
     int before = 0;
     for (int i = 0; i < octant; ++i) before += node.childMask >> i & 1;
     local.index = node.firstChild + static_cast<std::uint32_t>(before);

@@ -1,0 +1,50 @@
+#include "converter/slices.h"
+
+#include <algorithm>
+
+namespace strata {
+
+SliceBuilder::SliceBuilder(const BuildFrame& frame, NodeKey cell, std::uint64_t points)
+    : frame_(frame), cell_(cell), slicesLeft_(points == 0 ? 0 : (points - 1) / kMostSlicePoints) {}
+
+std::vector<BuiltNode> SliceBuilder::add(std::span<const std::byte> packed) {
+  std::vector<BuiltNode> full;
+  const std::size_t sliceBytes = kMostSlicePoints * frame_.format.stride();
+  while (!packed.empty()) {
+    const std::size_t taken = slicesLeft_ > 0 ? std::min(packed.size(), sliceBytes - pending_.size()) : packed.size();
+    pending_.insert(pending_.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(taken));
+    packed = packed.subspan(taken);
+    if (slicesLeft_ == 0 || pending_.size() < sliceBytes) continue;
+    full.push_back(finishSlice(pending_));
+    pending_.clear();
+  }
+  return full;
+}
+
+std::vector<SubtreeShape> SliceBuilder::takeTopChildren() {
+  std::vector<SubtreeShape> children;
+  if (below_) children.push_back(*below_);
+  return children;
+}
+
+BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
+  const CellFrame cell(frame_, cell_);
+  const std::size_t stride = frame_.format.stride();
+  std::vector<std::int32_t> columns[3];
+  for (std::size_t at = 0; at < packed.size(); at += stride) {
+    std::int64_t grid[3];
+    frame_.format.getPosition(packed.data() + at, grid);
+    for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
+  }
+  const LevelOrder levels =
+      sampleNode(frame_.sampling, {{columns[0], columns[1], columns[2]}, cell.step}, LevelOrder::kAll, scratch_);
+  Moments moments = cell.world(levels.moments);
+  const std::vector<SubtreeShape> children = takeTopChildren();
+  for (const SubtreeShape& child : children) moments.add(child.moments);
+  FinishedNode finished = finishNode(frame_, cell_, gather(frame_, packed, stride, levels.order), levels, moments, children);
+  finished.node.record.firstChild = static_cast<std::uint32_t>(slicesLeft_--);
+  below_ = finished.shape;
+  return std::move(finished.node);
+}
+
+}  // namespace strata
