@@ -128,7 +128,8 @@ class ChunkBuilder {
   Own takeOwn(NodeKey key, int side, std::size_t begin, std::size_t end) {
     Own own;
     const bool split = canSplit(key, begin, end, side);
-    if (!split && end - begin > SliceBuilder::kMostSlicePoints) begin = takeSlices(key, side, begin, end, own);
+    const bool tooMany = end - begin > std::max(frame_.info.nodePoints, SliceBuilder::kMostSlicePoints);
+    if (!split && tooMany) begin = takeSlices(key, side, begin, end, own);
     own.levels = sampleNode(frame_.sampling, localPoints(side, begin, end),
                             split ? frame_.info.nodePoints : LevelOrder::kAll, scratch_);
     own.records.resize(own.levels.order.size());

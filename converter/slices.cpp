@@ -1,6 +1,9 @@
 #include "converter/slices.h"
 
 #include <algorithm>
+#include <cstring>
+
+#include "converter/lod_colour.h"
 
 namespace strata {
 
@@ -19,6 +22,21 @@ std::vector<BuiltNode> SliceBuilder::add(std::span<const std::byte> packed) {
     pending_.clear();
   }
   return full;
+}
+
+std::vector<std::byte> SliceBuilder::takeTopPoints() {
+  if (!frame_.averages()) return std::move(pending_);
+  const DrawColour colour(frame_.info);
+  const std::size_t stride = frame_.format.stride(), topStride = topPointStride(frame_);
+  std::vector<std::byte> packed(pending_.size() / stride * topStride);
+  for (std::size_t i = 0; i < pending_.size() / stride; ++i) {
+    const std::byte* record = pending_.data() + i * stride;
+    const Represented itself{colour.of(record + frame_.format.positionBytes())};
+    std::memcpy(packed.data() + i * topStride, record, stride);
+    std::memcpy(packed.data() + i * topStride + stride, &itself, sizeof itself);
+  }
+  pending_.clear();
+  return packed;
 }
 
 std::vector<SubtreeShape> SliceBuilder::takeTopChildren() {
@@ -41,7 +59,8 @@ BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
   Moments moments = cell.world(levels.moments);
   const std::vector<SubtreeShape> children = takeTopChildren();
   for (const SubtreeShape& child : children) moments.add(child.moments);
-  FinishedNode finished = finishNode(frame_, cell_, gather(frame_, packed, stride, levels.order), levels, moments, children);
+  FinishedNode finished =
+      finishNode(frame_, cell_, gather(frame_, packed, stride, levels.order), levels, moments, children);
   finished.node.record.firstChild = static_cast<std::uint32_t>(slicesLeft_--);
   below_ = finished.shape;
   return std::move(finished.node);

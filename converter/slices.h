@@ -16,15 +16,15 @@ namespace strata {
 /// slice, whatever the cell holds.
 class SliceBuilder {
  public:
-  static constexpr std::uint32_t kMostSlicePoints = 1u << 20;
+  static constexpr std::uint32_t kMostSlicePoints = 1u << 18;
 
   /// `points` is how many are going to be added.
   SliceBuilder(const BuildFrame& frame, NodeKey cell, std::uint64_t points);
 
   /// Adds packed points; returns the slices that are full by now, to be written.
   std::vector<BuiltNode> add(std::span<const std::byte> packed);
-  /// The points that the node itself keeps, and the shape of its slices (none, or one).
-  std::vector<std::byte> takeTopPoints() { return std::move(pending_); }
+  /// The points that the node itself keeps, as BuiltChunk has them, and the shape of its slices (none, or one).
+  std::vector<std::byte> takeTopPoints();
   std::vector<SubtreeShape> takeTopChildren();
 
  private:

@@ -101,7 +101,7 @@ class Slices : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TempFolder;
-    expectWhole(3'000'000, 60'000, std::uint64_t{4} << 30, (*folder_ / "a.strata").string());
+    expectWhole(2'000'000, 60'000, std::uint64_t{4} << 30, (*folder_ / "a.strata").string());
   }
   static void TearDownTestSuite() { delete folder_; }
   static test::TempFolder* folder_;
