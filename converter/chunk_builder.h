@@ -1,8 +1,8 @@
 #pragma once
-#include <algorithm>
 #include <cstddef>
 #include <vector>
 
+#include "converter/chunk_scratch.h"
 #include "converter/node_builder.h"
 
 namespace strata {
@@ -19,14 +19,13 @@ std::size_t topPointStride(const BuildFrame& frame);
 
 /// Builds the nodes of `cell` from all of its points (packed, in the order of the input), in memory, top down
 /// (design section 5, stage 3): a node keeps representatives, the rest goes to its children.
-BuiltChunk buildChunk(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points);
+BuiltChunk buildChunk(const BuildFrame& frame, NodeKey cell, std::vector<std::byte> points, ChunkScratch& scratch);
 
-/// Memory that building a chunk takes for each of its points at its peak, the points themselves included: the points
-/// twice while they are put in order, or the points, two sets of columns and the n-tree's scratch. Finished nodes
-/// (at most about a point's own size each) come on top.
+/// Memory that building a chunk takes for each of its points at its peak, with a scratch that is used again: the points
+/// as they come and in order, two sets of columns, the octants and the n-tree. Finished nodes (at most about a point's
+/// own size each) come on top.
 inline std::size_t chunkBytesPerPoint(const PackedFormat& format) {
-  constexpr std::size_t kColumnBytes = 16;
-  return std::max(2 * format.stride() + kColumnBytes, format.stride() + 2 * kColumnBytes + kTreeBytesPerPoint + 1);
+  return 2 * format.stride() + 2 * 16 + 1 + kTreeBytesPerPoint;
 }
 
 }  // namespace strata

@@ -151,6 +151,7 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
     std::uint64_t count = 0;
   };
   std::vector<ChunkTop> tops;
+  ScratchPool scratches;
   std::size_t next = 0;
   std::uint64_t done = 0;
   tbb::task_arena arena(options.threads);
@@ -177,7 +178,9 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& 
             tbb::make_filter<std::shared_ptr<Work>, std::shared_ptr<Work>>(
                 tbb::filter_mode::parallel,
                 [&](std::shared_ptr<Work> work) {
-                  work->built = buildChunk(frame, work->cell, std::move(work->points));
+                  std::unique_ptr<ChunkScratch> scratch = scratches.lend();
+                  work->built = buildChunk(frame, work->cell, std::move(work->points), *scratch);
+                  scratches.giveBack(std::move(scratch));
                   return work;
                 }) &
             tbb::make_filter<std::shared_ptr<Work>, void>(

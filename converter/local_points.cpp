@@ -1,13 +1,11 @@
 #include "converter/local_points.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "converter/lanes.h"
 
 namespace strata {
 namespace {
-
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = std::int32_t __attribute__((vector_size(16)));
 
 constexpr std::size_t kLanes = 4;
 constexpr std::size_t kBlock = 512;  // points whose sums stay in single precision
@@ -15,19 +13,13 @@ constexpr std::size_t kBlock = 512;  // points whose sums stay in single precisi
 /// Sums of x, y, z, xx, xy, xz, yy, yz, zz.
 using Sums = std::array<double, 9>;
 
-Float4 load(const std::int32_t* from, std::int32_t middle) {
-  Int4 v;
-  std::memcpy(&v, from, sizeof v);
-  return __builtin_convertvector(v - middle, Float4);
-}
-
 /// `count` is a multiple of four.
 void addBlock(const LocalPoints& points, std::size_t first, std::size_t count, const glm::ivec3& middle, Sums& sums) {
   Float4 s[9] = {};
   for (std::size_t i = first; i < first + count; i += kLanes) {
-    const Float4 x = load(points.axis[0].data() + i, middle.x);
-    const Float4 y = load(points.axis[1].data() + i, middle.y);
-    const Float4 z = load(points.axis[2].data() + i, middle.z);
+    const Float4 x = toFloats(loadInts(points.axis[0].data() + i) - middle.x);
+    const Float4 y = toFloats(loadInts(points.axis[1].data() + i) - middle.y);
+    const Float4 z = toFloats(loadInts(points.axis[2].data() + i) - middle.z);
     s[0] += x;
     s[1] += y;
     s[2] += z;

@@ -47,7 +47,8 @@ class Merger {
         sampleNode(frame_.sampling, localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_);
     Moments moments = cell.world(levels.moments);
     for (const SubtreeShape& child : node.children) moments.add(child.moments);
-    NodePoints points = gather(frame_, node.points, stride_, levels.order);
+    NodePoints points;
+    gather(frame_, node.points.data(), stride_, levels.order, points);
     if (frame_.averages() && !node.children.empty())
       for (const std::uint32_t i : levels.order)
         points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);

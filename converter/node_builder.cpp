@@ -1,7 +1,8 @@
 #include "converter/node_builder.h"
 
 #include <algorithm>
-#include <cstring>
+
+#include "converter/copy_bytes.h"
 
 namespace strata {
 namespace {
@@ -44,22 +45,23 @@ CellFrame::CellFrame(const BuildFrame& frame, NodeKey cell) {
   step = frame.info.grid.scale * static_cast<double>(std::int64_t{1} << shift);
 }
 
-NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::size_t stride,
-                  std::span<const std::uint32_t> which) {
-  const std::size_t attributeBytes = frame.format.attributeBytes;
-  NodePoints out;
+void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
+            NodePoints& out) {
+  constexpr std::size_t kAhead = 12;  // records are far apart
+  const std::size_t attributeBytes = frame.format.attributeBytes, positionBytes = frame.format.positionBytes();
   for (auto& axis : out.grid) axis.resize(which.size());
   out.attributes.resize(which.size() * attributeBytes);
+  out.drawColours.clear();
   std::byte* attributes = out.attributes.data();
   for (std::size_t i = 0; i < which.size(); ++i) {
-    const std::byte* record = records.data() + which[i] * stride;
+    if (i + kAhead < which.size()) __builtin_prefetch(records + which[i + kAhead] * stride);
+    const std::byte* record = records + which[i] * stride;
     std::int64_t grid[3];
     frame.format.getPosition(record, grid);
     for (std::size_t axis = 0; axis < 3; ++axis) out.grid[axis][i] = grid[axis];
-    std::memcpy(attributes, record + frame.format.positionBytes(), attributeBytes);
+    copyBytes(attributes, record + positionBytes, attributeBytes);
     attributes += attributeBytes;
   }
-  return out;
 }
 
 FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,

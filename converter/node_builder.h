@@ -56,9 +56,9 @@ struct FinishedNode {
   SubtreeShape shape;
 };
 
-/// Copies packed records, `which` of them in this order. They stand `stride` bytes apart.
-NodePoints gather(const BuildFrame& frame, std::span<const std::byte> records, std::size_t stride,
-                  std::span<const std::uint32_t> which);
+/// Replaces `out` by copies of packed records, `which` of them in this order. They stand `stride` bytes apart.
+void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
+            NodePoints& out);
 
 /// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); `moments` are of
 /// them and everything below, world; `children` are the shapes of the node's subtrees.

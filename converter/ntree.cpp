@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <vector>
+
+#include "converter/lanes.h"
 
 namespace strata {
 namespace {
@@ -36,7 +39,7 @@ TreeFrame fitFrame(const LocalPoints& points, const LocalBounds& bounds, NTree& 
 }
 
 /// Puts one zero bit after each of the low 15 bits.
-std::uint32_t spreadBy1(std::uint32_t v) {
+Uint4 spreadBy1(Uint4 v) {
   v = (v | v << 8) & 0x00ff00ff;
   v = (v | v << 4) & 0x0f0f0f0f;
   v = (v | v << 2) & 0x33333333;
@@ -44,44 +47,75 @@ std::uint32_t spreadBy1(std::uint32_t v) {
 }
 
 /// Puts two zero bits after each of the low 10 bits.
-std::uint32_t spreadBy2(std::uint32_t v) {
+Uint4 spreadBy2(Uint4 v) {
   v = (v | v << 16) & 0x030000ff;
   v = (v | v << 8) & 0x0300f00f;
   v = (v | v << 4) & 0x030c30c3;
   return (v | v << 2) & 0x09249249;
 }
 
-std::uint32_t interleave(int levelBits, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-  if (levelBits == 1) return a;
-  if (levelBits == 2) return spreadBy1(a) << 1 | spreadBy1(b);
-  return spreadBy2(a) << 2 | spreadBy2(b) << 1 | spreadBy2(c);
+template <int kLevelBits>
+[[gnu::always_inline]] inline Uint4 interleave(const Uint4 (&cell)[3]) {
+  if constexpr (kLevelBits == 1) return cell[0];
+  if constexpr (kLevelBits == 2) return spreadBy1(cell[0]) << 1 | spreadBy1(cell[1]);
+  return spreadBy2(cell[0]) << 2 | spreadBy2(cell[1]) << 1 | spreadBy2(cell[2]);
 }
+
+std::uint32_t interleave(int levelBits, const std::uint32_t (&cell)[3]) {
+  const Uint4 cells[3] = {Uint4{} + cell[0], Uint4{} + cell[1], Uint4{} + cell[2]};
+  return levelBits == 1 ? cell[0] : levelBits == 2 ? interleave<2>(cells)[0] : interleave<3>(cells)[0];
+}
+
+/// Keys of four points, given their places from the middle of the frame.
+template <int kLevelBits>
+class KeyMaker {
+ public:
+  explicit KeyMaker(const TreeFrame& frame)
+      : most_(std::ldexp(1.0f, frame.levels) - 1.0f), aim_(kThird >> (30 - frame.levels)) {
+    for (std::size_t k = 0; k < kLevelBits; ++k)
+      for (int i = 0; i < 3; ++i) axes_[k][i] = static_cast<float>(std::ldexp(frame.axes[k][i], frame.levels));
+    half_ = std::ldexp(0.5f, frame.levels);
+  }
+  Uint4 operator()(const Float4& x, const Float4& y, const Float4& z) const {
+    Uint4 cell[3] = {};
+    for (int k = 0; k < kLevelBits; ++k) {
+      Float4 along = x * axes_[k][0] + y * axes_[k][1] + z * axes_[k][2] + half_;
+      along = along > 0.0f ? along : Float4{};
+      along = along < most_ ? along : Float4{} + most_;
+      cell[k] = reinterpret_cast<Uint4>(__builtin_convertvector(along, Int4)) ^ aim_;
+    }
+    return interleave<kLevelBits>(cell);
+  }
+
+ private:
+  float axes_[3][3] = {};
+  float half_ = 0.0f;
+  const float most_;
+  const std::uint32_t aim_;
+};
 
 template <int kLevelBits>
 void makeKeys(const LocalPoints& points, const TreeFrame& frame, std::uint64_t* entries) {
-  const float cells = std::ldexp(1.0f, frame.levels);
-  const std::uint32_t aim = kThird >> (30 - frame.levels);
-  float axis[3][3];
-  for (std::size_t k = 0; k < 3; ++k)
-    for (int i = 0; i < 3; ++i) axis[k][i] = static_cast<float>(frame.axes[k][i]) * cells;
-  const glm::ivec3 middle = frame.middle;
-  const std::int32_t *px = points.axis[0].data(), *py = points.axis[1].data(), *pz = points.axis[2].data();
-  for (std::size_t i = 0; i < points.count(); ++i) {
-    const auto x = static_cast<float>(px[i] - middle.x);
-    const auto y = static_cast<float>(py[i] - middle.y);
-    const auto z = static_cast<float>(pz[i] - middle.z);
-    std::uint32_t cell[3] = {0, 0, 0};
-    for (int k = 0; k < kLevelBits; ++k) {
-      const float along = x * axis[k][0] + y * axis[k][1] + z * axis[k][2] + 0.5f * cells;
-      const auto whole = static_cast<std::int32_t>(std::min(std::max(along, 0.0f), cells - 1.0f));
-      cell[k] = static_cast<std::uint32_t>(whole) ^ aim;
+  const KeyMaker<kLevelBits> keys(frame);
+  const std::size_t count = points.count();
+  for (std::size_t i = 0; i < count; i += 4) {
+    Int4 at[3] = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::int32_t* from = points.axis[axis].data() + i;
+      if (i + 4 <= count)
+        at[axis] = loadInts(from);
+      else
+        std::memcpy(&at[axis], from, (count - i) * sizeof *from);
     }
-    entries[i] = static_cast<std::uint64_t>(interleave(kLevelBits, cell[0], cell[1], cell[2])) << 32 | i;
+    const Uint4 key =
+        keys(toFloats(at[0] - frame.middle.x), toFloats(at[1] - frame.middle.y), toFloats(at[2] - frame.middle.z));
+    for (std::size_t lane = 0; lane < 4 && i + lane < count; ++lane)
+      entries[i + lane] = static_cast<std::uint64_t>(key[lane]) << 32 | (i + lane);
   }
 }
 
 /// Sorts by key, keeping the order of equal keys; the result is in `entries`.
-void sortEntries(std::size_t count, std::vector<std::uint64_t>& entries, std::vector<std::uint64_t>& spare) {
+void sortEntries(std::size_t count, Buffer<std::uint64_t>& entries, Buffer<std::uint64_t>& spare) {
   std::array<std::array<std::uint32_t, kDigitValues>, kDigits> starts{};
   const auto digit = [](std::uint64_t entry, int d) {
     return static_cast<std::size_t>(entry >> (32 + kDigitBits * d)) & (kDigitValues - 1);
@@ -175,7 +209,7 @@ void deepen(const LocalPoints& points, const TreeFrame& frame, TreeScratch& scra
     std::uint32_t cell[3];
     for (std::size_t k = 0; k < 3; ++k)
       cell[k] = (static_cast<std::uint32_t>((glm::dot(d, frame.axes[k]) + 0.5) * cells) & inside) ^ aim;
-    return interleave(frame.levelBits, cell[0], cell[1], cell[2]);
+    return interleave(frame.levelBits, cell);
   };
   const Ranker ranker(frame, frame.levels);
   const std::size_t count = points.count();
@@ -202,18 +236,13 @@ void deepen(const LocalPoints& points, const TreeFrame& frame, TreeScratch& scra
   }
 }
 
-void grow(TreeScratch& scratch, std::size_t count) {
-  if (scratch.entries.size() >= count) return;
-  scratch.entries.resize(count);
-  scratch.spare.resize(count);
-  scratch.ranks.resize(count);
-}
-
 }  // namespace
 
 NTree buildTree(const LocalPoints& points, std::size_t wanted, TreeScratch& scratch) {
   const std::size_t count = points.count();
-  grow(scratch, count);
+  scratch.entries.room(count);
+  scratch.spare.room(count);
+  scratch.ranks.room(count);
   const LocalBounds bounds = boundsOf(points);
   NTree tree;
   tree.moments = momentsOf(points, bounds);
@@ -225,8 +254,8 @@ NTree buildTree(const LocalPoints& points, std::size_t wanted, TreeScratch& scra
   const std::size_t alike = rankEntries(count, frame, scratch);
   wanted = std::min(wanted, count);
   if (frame.levelBits > 1 && count - alike < wanted - wanted / 64) deepen(points, frame, scratch);
-  tree.entries = std::span(scratch.entries).first(count);
-  tree.ranks = std::span(scratch.ranks).first(count);
+  tree.entries = scratch.entries.room(count);
+  tree.ranks = scratch.ranks.room(count);
   return tree;
 }
 

@@ -2,8 +2,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "converter/buffer.h"
 #include "converter/local_points.h"
 
 namespace strata {
@@ -11,8 +11,8 @@ namespace strata {
 /// Memory for ordering one node, to be used for the next one too. With what averaging colours takes for a moment it is
 /// kTreeBytesPerPoint for each point.
 struct TreeScratch {
-  std::vector<std::uint64_t> entries, spare;
-  std::vector<std::uint16_t> ranks;
+  Buffer<std::uint64_t> entries, spare;
+  Buffer<std::uint16_t> ranks;
 };
 inline constexpr std::size_t kTreeBytesPerPoint = 22;
 

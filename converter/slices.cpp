@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "converter/lod_colour.h"
 
@@ -59,8 +60,9 @@ BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
   Moments moments = cell.world(levels.moments);
   const std::vector<SubtreeShape> children = takeTopChildren();
   for (const SubtreeShape& child : children) moments.add(child.moments);
-  FinishedNode finished =
-      finishNode(frame_, cell_, gather(frame_, packed, stride, levels.order), levels, moments, children);
+  NodePoints points;
+  gather(frame_, packed.data(), stride, levels.order, points);
+  FinishedNode finished = finishNode(frame_, cell_, std::move(points), levels, moments, children);
   finished.node.record.firstChild = static_cast<std::uint32_t>(slicesLeft_--);
   below_ = finished.shape;
   return std::move(finished.node);

@@ -5,43 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <map>
 #include <numeric>
 #include <random>
 #include <set>
 
 #include "io/store.h"
+#include "tests/support/evenness.h"
 
 namespace strata {
 namespace {
 
-/// Points that own their integers.
-struct Cloud {
-  std::vector<std::int32_t> axis[3];
-  glm::dvec3 step{0.001};
-
-  LocalPoints local() const { return {{axis[0], axis[1], axis[2]}, step}; }
-  glm::dvec3 position(std::size_t i) const { return step * glm::dvec3(axis[0][i], axis[1][i], axis[2][i]); }
-  std::size_t count() const { return axis[0].size(); }
-};
-
-glm::dquat anyTurn(std::mt19937_64& random) {
-  std::normal_distribution<double> normal;
-  return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
-}
-
-/// Random points of a box with the given half sizes, turned, in the middle of a cube of 2^20 steps.
-Cloud turnedBox(std::mt19937_64& random, const glm::dvec3& half, std::size_t count, const glm::dquat& turn) {
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Cloud cloud;
-  for (std::size_t i = 0; i < count; ++i) {
-    const glm::dvec3 p = turn * (half * glm::dvec3(uniform(random), uniform(random), uniform(random)));
-    for (int a = 0; a < 3; ++a)
-      cloud.axis[a].push_back(static_cast<std::int32_t>(std::lround(p[a] / cloud.step[a])) + (1 << 19));
-  }
-  return cloud;
-}
+using namespace test;
 
 constexpr glm::dvec3 kLine{200.0, 0.02, 0.02}, kPlane{100.0, 80.0, 0.05}, kVolume{100.0, 80.0, 60.0};
 
@@ -204,56 +179,12 @@ TEST(LevelOrder, LeafDepthsDifferByAtMostOne) {
     }
 }
 
-/// Coefficient of variation of the distances to the nearest neighbour: 0.52 for random points of a plane, 0 on a grid.
-double nearestNeighbourVariation(const Cloud& cloud, std::span<const std::uint32_t> shown) {
-  std::vector<glm::dvec3> points;
-  Box box;
-  for (const std::uint32_t i : shown) {
-    points.push_back(cloud.position(i));
-    box.add(points.back());
-  }
-  const double cell = 2.0 * box.diagonal() / std::sqrt(static_cast<double>(points.size()));
-  const auto cellOf = [&](const glm::dvec3& p) {
-    const glm::ivec3 c = glm::floor((p - box.min) / cell);
-    return std::array<int, 3>{c.x, c.y, c.z};
-  };
-  std::map<std::array<int, 3>, std::vector<std::size_t>> grid;
-  for (std::size_t i = 0; i < points.size(); ++i) grid[cellOf(points[i])].push_back(i);
-  double sum = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    double best = 1e300;
-    const auto [x, y, z] = cellOf(points[i]);
-    for (int n = 0; n < 27; ++n)
-      if (const auto found = grid.find({x + n / 9 - 1, y + n / 3 % 3 - 1, z + n % 3 - 1}); found != grid.end())
-        for (const std::size_t j : found->second)
-          if (j != i) best = std::min(best, glm::length(points[i] - points[j]));
-    sum += best;
-    squares += best * best;
-  }
-  const double mean = sum / static_cast<double>(points.size());
-  return std::sqrt(std::max(0.0, squares / static_cast<double>(points.size()) - mean * mean)) / mean;
-}
-
-/// Largest variation at the ends of the levels, and at any of a row of prefixes.
-struct Evenness {
-  double fullLevels = 0.0, anywhere = 0.0;
-};
-Evenness evennessOf(const Cloud& cloud, const LevelOrder& levels) {
-  Evenness worst;
-  const std::span<const std::uint32_t> order = levels.order;
-  for (std::size_t l = 0; l + 1 < levels.prefix.size(); ++l)
-    if (levels.prefix[l] >= 200)
-      worst.fullLevels = std::max(worst.fullLevels, nearestNeighbourVariation(cloud, order.first(levels.prefix[l])));
-  for (std::size_t n = 200; n <= order.size(); n += n / 7 + 1)
-    worst.anywhere = std::max(worst.anywhere, nearestNeighbourVariation(cloud, order.first(n)));
-  return worst;
-}
-
 TEST(LevelOrder, EveryPrefixOfADensePlaneIsMoreEvenThanRandomPointsAtAnyRotation) {
   std::mt19937_64 random(13);
   for (int round = 0; round < 6; ++round) {
     const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 200000, anyTurn(random));
-    const Evenness evenness = evennessOf(cloud, orderOf(cloud, 16384));
+    const LevelOrder levels = orderOf(cloud, 16384);
+    const Evenness evenness = evennessOf(cloud, levels.order, levels.prefix);
     RecordProperty("full levels", std::to_string(evenness.fullLevels));
     RecordProperty("anywhere", std::to_string(evenness.anywhere));
     EXPECT_LE(evenness.fullLevels, 0.30);
