@@ -134,7 +134,7 @@ class ChunkBuilder {
     for (const Represented& one : own.represented) points.drawColours.push_back(one.colour);
     Moments moments = cellFrame_.world(own.levels.moments);
     for (const SubtreeShape& slice : own.sliceShape) moments.add(slice.moments);
-    FinishedNode finished = finishNode(frame_, key, std::move(points), own.levels, moments, children);
+    FinishedNode finished = finishNode(frame_, key, points, own.levels, moments, children, scratch_.encode);
     nodes[place] = std::move(finished.node);
     return finished.shape;
   }

@@ -28,6 +28,7 @@ struct ChunkScratch {
   Buffer<std::uint8_t> octants;  ///< of the points that are being divided; 8: stays in the node
   TreeScratch tree;
   NodePoints node;
+  EncodeScratch encode;
 };
 
 /// Fills `records`, and `columns[0]` along with them, from packed points in any order.

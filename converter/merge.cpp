@@ -52,7 +52,7 @@ class Merger {
     if (frame_.averages() && !node.children.empty())
       for (const std::uint32_t i : levels.order)
         points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);
-    FinishedNode finished = finishNode(frame_, node.key, std::move(points), levels, moments, node.children);
+    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children, encodeScratch_);
     std::vector<BuiltNode> one;
     one.push_back(std::move(finished.node));
     sink_.write(std::move(one));
@@ -127,6 +127,7 @@ class Merger {
   NodeSink& sink_;
   const ConvertControl& control_;
   TreeScratch scratch_;
+  EncodeScratch encodeScratch_;
 };
 
 }  // namespace

@@ -64,10 +64,10 @@ void gather(const BuildFrame& frame, const std::byte* records, std::size_t strid
   }
 }
 
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,
-                        const Moments& moments, std::span<const SubtreeShape> children) {
-  if (frame.sampling == Sampling::ntree) points.levels = levels.prefix;  // the others keep their order, to be measured
-  thread_local EncodeScratch scratch;  // a few megabytes that would be new pages for every node
+FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints& points, const LevelOrder& levels,
+                        const Moments& moments, std::span<const SubtreeShape> children, EncodeScratch& scratch) {
+  points.levels.clear();
+  if (frame.sampling == Sampling::ntree) points.levels = levels.prefix;
   EncodedNode encoded = encodeNode(points, frame.info, scratch);
   FinishedNode out;
   out.shape = fitShape(frame, points, moments, children);

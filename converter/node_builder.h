@@ -60,9 +60,10 @@ struct FinishedNode {
 void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
             NodePoints& out);
 
-/// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); `moments` are of
-/// them and everything below, world; `children` are the shapes of the node's subtrees.
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints points, const LevelOrder& levels,
-                        const Moments& moments, std::span<const SubtreeShape> children);
+/// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); their own levels are
+/// set where the codec may sort inside them. `moments` are of the points and everything below, world; `children` are
+/// the shapes of the node's subtrees.
+FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints& points, const LevelOrder& levels,
+                        const Moments& moments, std::span<const SubtreeShape> children, EncodeScratch& scratch);
 
 }  // namespace strata

@@ -62,7 +62,7 @@ BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
   for (const SubtreeShape& child : children) moments.add(child.moments);
   NodePoints points;
   gather(frame_, packed.data(), stride, levels.order, points);
-  FinishedNode finished = finishNode(frame_, cell_, std::move(points), levels, moments, children);
+  FinishedNode finished = finishNode(frame_, cell_, points, levels, moments, children, encodeScratch_);
   finished.node.record.firstChild = static_cast<std::uint32_t>(slicesLeft_--);
   below_ = finished.shape;
   return std::move(finished.node);

@@ -36,6 +36,7 @@ class SliceBuilder {
   std::vector<std::byte> pending_;
   std::optional<SubtreeShape> below_;
   TreeScratch scratch_;
+  EncodeScratch encodeScratch_;
 };
 
 }  // namespace strata
