@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numeric>
+#include <random>
 
 #include "converter/build_folder.h"
 #include "converter/options.h"
@@ -13,6 +15,7 @@
 #include "io/node_codec.h"
 #include "io/store_files.h"
 #include "io/verify.h"
+#include "tests/support/evenness.h"
 #include "tests/support/test_data.h"
 
 namespace strata {
@@ -150,6 +153,38 @@ TEST_P(EveryShape, EveryPointLiesInItsNodesCubeAndInTheContoursOfItAndAllAbove) 
 INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape,
                          testing::Values("plane", "room", "city", "terrain", "stack", "sphere", "degenerate"),
                          [](const auto& shape) { return std::string(shape.param); });
+
+TEST(Converter, EveryPrefixOfAStoredDensePlaneIsMoreEvenThanRandomPoints) {
+  const test::TempFolder folder;
+  {
+    std::mt19937_64 random(3);
+    std::ofstream text(folder / "plane.xyz");
+    for (int i = 0; i < 200000; ++i) {  // turned by 30 degrees
+      const double x = 1e-4 * static_cast<double>(random() % 1000000),
+                   y = 1e-4 * static_cast<double>(random() % 1000000);
+      text << 0.866 * x - 0.5 * y << ' ' << 0.5 * x + 0.866 * y << " 0.0\n";
+    }
+  }
+  ConvertOptions options;
+  options.inputs = {(folder / "plane.xyz").string()};
+  options.output = (folder / "a.strata").string();
+  options.nodePoints = 16384;
+  convert(options, ConvertControl{});
+  const Store store(options.output);
+  const NodePoints points = readAll(store, 0);
+  test::Cloud cloud;
+  cloud.step = store.info().grid.scale;
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const std::int64_t g : points.grid[axis]) cloud.axis[axis].push_back(static_cast<std::int32_t>(g));
+  std::vector<std::uint32_t> order(points.count());
+  std::iota(order.begin(), order.end(), 0u);
+  const NodeRecord& root = store.hierarchy().nodes[0];
+  const test::Evenness evenness = test::evennessOf(cloud, order, std::span(root.prefix).first(root.prefixes));
+  RecordProperty("full levels", std::to_string(evenness.fullLevels));
+  RecordProperty("anywhere", std::to_string(evenness.anywhere));
+  EXPECT_LE(evenness.fullLevels, 0.30);
+  EXPECT_LE(evenness.anywhere, 0.45);
+}
 
 struct Way {
   Sampling sampling;
