@@ -14,7 +14,7 @@ constexpr int kMostLoaders = 64;
 
 /// What CLI11 fills in before names become values.
 struct RawOptions {
-  std::string backend = "auto", size = "1920x1080", colour = "auto", failAbove;
+  std::string backend = "auto", size = "1920x1080", failAbove;
 };
 
 void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
@@ -24,7 +24,8 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->check(CLI::IsMember({"orbit", "flythrough", "dive", "street"}));
   app.add_flag("--stills", o.stills, "write overview.png, close.png and detail.png");
   app.add_option("-o,--output", o.output, "folder for the report and the pictures");
-  app.add_option("--backend", raw.backend, "cpu, compute32, points or auto")->capture_default_str();
+  app.add_option("--backend", raw.backend, "auto, cpu, compute32, compute64, compute_lock or points")
+      ->capture_default_str();
   app.add_option("--size", raw.size, "of the picture, pixels")->capture_default_str();
   app.add_option("--point-budget", o.streamer.selection.pointBudget, "most points in a frame")
       ->check(CLI::Range(std::uint64_t{1}, SelectionOptions::kMaxPointBudget))
@@ -36,8 +37,7 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->check(CLI::Range(1, DrawOptions::kLargestPoint))
       ->capture_default_str();
   app.add_flag("--edl", o.edl, "eye-dome lighting");
-  app.add_option("--colour", raw.colour, "auto, rgb, intensity, elevation, classification or level")
-      ->capture_default_str();
+  addDrawFlags(app, o.draw);
   app.add_option("--loader-threads", o.streamer.loaderThreads, "threads that read nodes")
       ->check(CLI::Range(1, kMostLoaders))
       ->capture_default_str();
@@ -96,7 +96,9 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   }
   options.backend = parseBackend(raw.backend);
   options.size = parseSize(raw.size);
-  options.colour = parseColour(raw.colour);
+  options.colour = colourOf(options.draw);
+  DrawOptions checked;
+  applyDrawFlags(options.draw, checked);
   if (!raw.failAbove.empty()) options.failAbove = parsePercent(raw.failAbove);
   if (compare->parsed()) {
     options.command = BenchOptions::Command::compare;

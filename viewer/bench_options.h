@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "lod/streamer.h"
 #include "render/rasterizer.h"
+#include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
 
 namespace strata {
@@ -25,6 +26,7 @@ struct BenchOptions {
   PictureSize size;
   StreamerOptions streamer;
   std::optional<ColourMode> colour;
+  DrawFlags draw;
   int pointSize = 1;
   bool edl = false;
   bool cold = false;

@@ -78,6 +78,7 @@ Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::str
           {"points a pixel", density},
           {"point size", std::to_string(draw.pointSize)},
           {"colour", colourName(draw.colour)},
+          {"shading", draw.shading == Shading::highQuality ? "high quality" : "plain"},
           {"eye-dome lighting", draw.edl ? "yes" : "no"},
           {"loader threads", std::to_string(o.streamer.loaderThreads)},
           {"cache", readableBytes(static_cast<double>(o.streamer.cacheBytes))},
@@ -222,7 +223,8 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   StreamerOptions rich = options.streamer;
   rich.selection.pointsPerPixel = std::max(rich.selection.pointsPerPixel, kStillPointsPerPixel);
   Streamer streamer(store, rich);
-  const DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
+  DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
+  applyDrawFlags(options.draw, draw);
   std::vector<ReportPicture> pictures;
   double farthest = 0.0;  // the overview stays where it is, each one after it nearer than the one before
   for (const Still& still : chooseStills(scene, *store, options.size.width, options.size.height)) {
@@ -245,6 +247,7 @@ BenchReport runBench(const BenchOptions& options) {
   std::string pageCache = "left as it was";
   if (options.cold) pageCache = dropPages(*store);
   DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, options.colour);
+  applyDrawFlags(options.draw, draw);
   draw.pointSize = options.pointSize;
   draw.edl = options.edl;
 

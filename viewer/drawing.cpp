@@ -37,7 +37,8 @@ std::optional<ColourMode> parseColour(const std::string& name) {
   for (const auto& [known, mode] : kColours)
     if (name == known) return mode;
   throw UsageError("--colour", "unknown name, found " + name +
-                                   " (expected auto, rgb, intensity, elevation, classification or level)");
+                                   " (expected auto, rgb, intensity, elevation, classification, level, return, normal, "
+                                   "precision or overdraw)");
 }
 
 const char* colourName(ColourMode mode) {

@@ -11,7 +11,8 @@
 
 namespace strata {
 
-/// "rgb", "intensity", "elevation", "classification", "level"; "auto" is nothing. Throws UsageError for another name.
+/// "rgb", "intensity", "elevation", "classification", "level", "return", "normal", "precision", "overdraw"; "auto" is
+/// nothing. Throws UsageError for another name.
 std::optional<ColourMode> parseColour(const std::string& name);
 const char* colourName(ColourMode mode);
 

@@ -29,8 +29,19 @@ bool drawSettings(ViewerSettings& settings) {
   changed = ImGui::SliderInt("size", &settings.draw.pointSize, 1, 8, "%d px") || changed;
   // In the order of ColourMode.
   int mode = static_cast<int>(settings.draw.colour);
-  if (ImGui::Combo("colour", &mode, "rgb\0intensity\0elevation\0classification\0level\0")) {
+  if (ImGui::Combo("colour", &mode,
+                   "rgb\0intensity\0elevation\0classification\0level\0return\0normal\0precision\0overdraw\0")) {
     settings.draw.colour = static_cast<ColourMode>(mode);
+    changed = true;
+  }
+  bool blended = settings.draw.shading == Shading::highQuality;
+  if (ImGui::Checkbox("high-quality shading", &blended)) {
+    settings.draw.shading = blended ? Shading::highQuality : Shading::plain;
+    changed = true;
+  }
+  int fill = settings.draw.fill / 2;
+  if (ImGui::Combo("fill holes", &fill, "no\0003 x 3\0005 x 5\0007 x 7\0")) {
+    settings.draw.fill = 2 * fill + 1;
     changed = true;
   }
   changed = ImGui::Checkbox("eye-dome lighting", &settings.draw.edl) || changed;

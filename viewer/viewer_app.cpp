@@ -72,6 +72,7 @@ class ViewerApp {
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
+    applyDrawFlags(options.draw, settings_.draw);
     settings_.draw.pointSize = options.pointSize;
     settings_.draw.edl = options.edl;
     stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();

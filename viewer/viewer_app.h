@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "lod/streamer.h"
 #include "render/rasterizer.h"
+#include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
 
 namespace strata {
@@ -19,6 +20,7 @@ struct ViewerOptions {
   PictureSize size{1280, 800};
   StreamerOptions streamer;
   std::optional<ColourMode> colour;
+  DrawFlags draw;
   int pointSize = 2;
   bool edl = true;
   bool convert = false;    ///< scans are converted without asking

@@ -8,14 +8,15 @@ namespace strata {
 
 std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* argv) {
   ViewerOptions options;
-  std::string backend = "auto", size = "1280x800", colour = "auto";
+  std::string backend = "auto", size = "1280x800";
   bool noEdl = false;
   CLI::App app{"Flies through stores.", "strata-view"};
   app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
   app.add_option("stores", options.stores,
                  "one or more stores, NAME.strata, shown as layers; scans, which are converted first; or a project")
       ->required();
-  app.add_option("--backend", backend, "cpu, compute32, points or auto")->capture_default_str();
+  app.add_option("--backend", backend, "auto, cpu, compute32, compute64, compute_lock or points")
+      ->capture_default_str();
   app.add_option("--size", size, "of the window, pixels")->capture_default_str();
   app.add_option("--point-budget", options.streamer.selection.pointBudget, "most points in a frame")
       ->check(CLI::Range(std::uint64_t{1}, SelectionOptions::kMaxPointBudget))
@@ -23,7 +24,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   app.add_option("--point-size", options.pointSize, "side of a point, pixels")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  app.add_option("--colour", colour, "auto, rgb, intensity, elevation, classification or level")->capture_default_str();
+  addDrawFlags(app, options.draw);
   app.add_option("--cache", options.streamer.cacheBytes, "memory for decoded nodes, such as 512M or 2G")
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--no-edl", noEdl, "without eye-dome lighting");
@@ -39,7 +40,9 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   }
   options.backend = parseBackend(backend);
   options.size = parseSize(size);
-  options.colour = parseColour(colour);
+  options.colour = colourOf(options.draw);
+  DrawOptions checked;
+  applyDrawFlags(options.draw, checked);
   options.edl = !noEdl;
   return options;
 }

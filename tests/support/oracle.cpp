@@ -27,17 +27,30 @@ bool inImage(const Projected& point, const View& view) {
          point.row >= 0.0 && point.row < view.height;
 }
 
-/// Calls visit(id, projected) for every point of the list.
+bool isWanted(const DrawOptions& options, const NodeData& node, std::uint32_t point, const glm::dvec3& position) {
+  if (!node.classification.empty() && !options.classes[node.classification[point]]) return false;
+  bool inBoxes = options.clip.boxes.empty();
+  for (const Box& box : options.clip.boxes) inBoxes = inBoxes || box.contains(position);
+  for (const glm::dvec4& plane : options.clip.planes)
+    if (glm::dot(plane, glm::dvec4(position, 1.0)) < 0.0) return false;
+  return inBoxes;
+}
+
+/// Calls visit(id, projected) for every point of the list that `options` want.
 template <typename Visit>
-void forEachPoint(const RenderList& list, const View& view, Visit visit) {
+void forEachPoint(const RenderList& list, const View& view, const DrawOptions& options, Visit visit) {
   const ViewConstants constants = viewConstants(view);
   std::uint32_t firstId = 0;
   for (const RenderItem& item : list.items) {
+    const bool kept = gazeKeeps(constants, options.gaze, *item.node);
     for (const Batch& batch : item.node->batches) {
+      if (!kept) break;
       const Precision precision = batchPrecision(constants, *item.node, batch);
       for (std::uint32_t i = 0; i < batch.pointCount && batch.firstPoint + i < item.pointCount; ++i) {
         const std::uint32_t point = batch.firstPoint + i;
-        visit(firstId + point, project(constants.projection, pointPosition(*item.node, batch, point, precision)));
+        const glm::dvec3 position = pointPosition(*item.node, batch, point, precision);
+        if (isWanted(options, *item.node, point, position))
+          visit(firstId + point, project(constants.projection, position));
       }
     }
     firstId += item.pointCount;
@@ -57,14 +70,14 @@ std::string describe(std::uint32_t id, const Projected& point) {
 
 }  // namespace
 
-Frame oracleFrame(const RenderList& list, const View& view) {
+Frame oracleFrame(const RenderList& list, const View& view, const DrawOptions& options) {
   Frame frame;
   frame.width = view.width;
   frame.height = view.height;
   const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
   frame.pointId.assign(pixels, Frame::kNoPoint);
-  forEachPoint(list, view, [&](std::uint32_t id, const Projected& point) {
+  forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) {
     if (!inImage(point, view)) return;
     const std::size_t at = static_cast<std::size_t>(point.row) * static_cast<std::size_t>(view.width) +
                            static_cast<std::size_t>(point.column);
@@ -77,10 +90,10 @@ Frame oracleFrame(const RenderList& list, const View& view) {
   return frame;
 }
 
-Comparison compareToOracle(const RenderList& list, const View& view, const Frame& frame) {
-  const Frame expected = oracleFrame(list, view);
+Comparison compareToOracle(const RenderList& list, const View& view, const Frame& frame, const DrawOptions& options) {
+  const Frame expected = oracleFrame(list, view, options);
   std::vector<Projected> points(list.pointCount);
-  forEachPoint(list, view, [&](std::uint32_t id, const Projected& point) { points[id] = point; });
+  forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) { points[id] = point; });
   Comparison result;
   for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
     const std::uint32_t wanted = expected.pointId[i], found = frame.pointId[i];
