@@ -11,7 +11,6 @@
 namespace strata {
 namespace {
 
-constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 15;  ///< by one thread
 constexpr std::size_t kPixelsAhead = 32;
 constexpr std::size_t kRowsAtOnce = 16;
 
@@ -24,8 +23,11 @@ struct PointPlace {
 /// Finds the node of an id: a table says which items a block of ids meets, a search among those finishes.
 class PointLookup {
  public:
-  explicit PointLookup(const RenderList& list) : list_(list) {
-    for (const RenderItem& item : list.items) starts_.push_back(starts_.back() + item.pointCount);
+  explicit PointLookup(const RenderList& list) {
+    for (const RenderItem& item : list.items) {
+      starts_.push_back(starts_.back() + item.pointCount);
+      nodes_.push_back(item.node.get());
+    }
     std::uint32_t item = 0;
     for (std::uint64_t id = 0; id < starts_.back(); id += kBlock) {
       while (starts_[item + 1] <= id) ++item;
@@ -36,15 +38,22 @@ class PointLookup {
 
   PointPlace find(std::uint32_t id) const {
     const std::uint32_t block = id / kBlock;
-    const auto begin = starts_.begin() + itemAt_[block] + 1, end = starts_.begin() + itemAt_[block + 1] + 1;
-    const auto item = static_cast<std::size_t>(std::upper_bound(begin, end, id) - starts_.begin()) - 1;
-    return {list_.items[item].node.get(), id - starts_[item]};
+    std::size_t item = itemAt_[block];
+    if (const std::size_t last = itemAt_[block + 1]; last > item + kFewItems)
+      item = static_cast<std::size_t>(std::upper_bound(starts_.begin() + static_cast<std::ptrdiff_t>(item) + 1,
+                                                       starts_.begin() + static_cast<std::ptrdiff_t>(last) + 1, id) -
+                                      starts_.begin()) -
+             1;
+    else
+      while (item < last && starts_[item + 1] <= id) ++item;
+    return {nodes_[item], id - starts_[item]};
   }
 
  private:
   static constexpr std::uint32_t kBlock = 4096;
+  static constexpr std::size_t kFewItems = 8;  ///< quicker one by one
 
-  const RenderList& list_;
+  std::vector<const NodeData*> nodes_;
   std::vector<std::uint32_t> starts_{0};  ///< first id of each item, then the end
   std::vector<std::uint32_t> itemAt_;     ///< of the first id of each block; the last item at the end
 };
@@ -66,11 +75,37 @@ class Colouring {
       : lookup_(list), constants_(viewConstants(view)), options_(options), buffer_(buffer) {
     const bool overdraw = options.colour == ColourMode::overdraw && buffer.counts.size() == buffer.pixels.size();
     if (overdraw) largestCount_ = largestCount(buffer.counts);
+    plainRgb_ = options.colour == ColourMode::rgb && options.shading == Shading::plain;
     blended_ = !overdraw && options.shading == Shading::highQuality && buffer.sums.size() == buffer.pixels.size();
   }
 
-  /// Pixels [begin, end), at most kPixelsAhead.
+  /// Of pixels [begin, end). Points of one row are scattered in memory: some pixels' attributes are asked for ahead.
   void colour(std::size_t begin, std::size_t end, std::uint32_t* out) const {
+    for (std::size_t i = begin; i < end; i += kPixelsAhead) {
+      const std::size_t last = std::min(i + kPixelsAhead, end);
+      if (plainRgb_)
+        copyRgb(i, last, out + (i - begin));
+      else
+        colourSome(i, last, out + (i - begin));
+    }
+  }
+
+ private:
+  void copyRgb(std::size_t begin, std::size_t end, std::uint32_t* out) const {
+    static const std::uint32_t missing = missingColour();
+    const std::uint32_t* places[kPixelsAhead];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t id = pixelId(buffer_.pixels[i]);
+      places[i - begin] = &missing;
+      if (id == Frame::kNoPoint) continue;
+      const PointPlace place = lookup_.find(id);
+      if (!place.node->colour.empty()) places[i - begin] = &place.node->colour[place.index];
+      __builtin_prefetch(places[i - begin]);
+    }
+    for (std::size_t i = begin; i < end; ++i) out[i - begin] = *places[i - begin];
+  }
+
+  void colourSome(std::size_t begin, std::size_t end, std::uint32_t* out) const {
     PointPlace places[kPixelsAhead];
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t id = pixelId(buffer_.pixels[i]);
@@ -78,18 +113,16 @@ class Colouring {
       if (places[i - begin].node != nullptr)
         prefetchColour(*places[i - begin].node, places[i - begin].index, options_.colour);
     }
-    for (std::size_t i = begin; i < end; ++i) {
-      if (pixelId(buffer_.pixels[i]) == Frame::kNoPoint) continue;
-      const PointPlace& place = places[i - begin];
-      out[i - begin] = largestCount_ > 0                          ? heat(buffer_.counts[i])
-                       : blended_ && buffer_.sums[i].count > 0    ? meanColour(buffer_.sums[i])
-                       : place.node == nullptr                    ? missingColour()
-                       : options_.colour == ColourMode::precision ? precisionColour(precision(place))
-                                                                  : plain(place);
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      if (pixelId(buffer_.pixels[i]) != Frame::kNoPoint) out[i - begin] = colourOne(i, places[i - begin]);
   }
 
- private:
+  std::uint32_t colourOne(std::size_t pixel, const PointPlace& place) const {
+    if (largestCount_ > 0) return heat(buffer_.counts[pixel]);
+    if (blended_) return buffer_.sums[pixel].count > 0 ? meanColour(buffer_.sums[pixel]) : missingColour();
+    return options_.colour == ColourMode::precision ? precisionColour(precision(place)) : plain(place);
+  }
+
   std::uint32_t plain(const PointPlace& place) const {
     return pointColour(*place.node, place.index, options_, Precision::low10);
   }
@@ -105,6 +138,7 @@ class Colouring {
   const DrawOptions& options_;
   const VisibilityBuffer& buffer_;
   std::uint32_t largestCount_ = 0;  ///< 0: no overdraw picture
+  bool plainRgb_ = false;
   bool blended_ = false;
 };
 
@@ -116,15 +150,31 @@ std::uint32_t backgroundColour(const DrawOptions& options, int y, int height) {
   return packColour(mix(above.x, below.x), mix(above.y, below.y), mix(above.z, below.z));
 }
 
-/// Puts the pixel's own index where its id is, so that dilation moves pixels, not points.
-void pointAtPixels(VisibilityBuffer& buffer, std::vector<std::uint32_t>& ids, const ThreadPool& pool) {
-  ids.resize(buffer.pixels.size());
-  pool.parallelFor(ids.size(), kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      ids[i] = pixelId(buffer.pixels[i]);
-      if (ids[i] != Frame::kNoPoint) buffer.pixels[i] = buffer.pixels[i] >> 32 << 32 | i;
+/// Gives pixels [begin, end) their own index where their id is, so that dilation moves pixels, not points.
+void pointAtPixels(VisibilityBuffer& buffer, std::size_t begin, std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    buffer.scratch.ids[i] = pixelId(buffer.pixels[i]);
+    if (buffer.scratch.ids[i] != Frame::kNoPoint) buffer.pixels[i] = buffer.pixels[i] >> 32 << 32 | i;
+  }
+}
+
+/// Fills row y of the frame from the buffer, whose pixels say where their colour and id stand in `colours` and `ids`;
+/// with `ids` null they hold their ids, and the colours are in the frame.
+void finishRow(const VisibilityBuffer& buffer, const DrawOptions& options, std::size_t y, const std::uint32_t* colours,
+               const std::uint32_t* ids, Frame& frame) {
+  const auto width = static_cast<std::size_t>(buffer.width);
+  const std::uint32_t background = backgroundColour(options, static_cast<int>(y), buffer.height);
+  for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
+    const std::uint32_t from = pixelId(buffer.pixels[i]);
+    frame.depth[i] = pixelDepth(buffer.pixels[i]);
+    if (from == Frame::kNoPoint) {
+      frame.pointId[i] = from;
+      frame.colour[i] = background;
+    } else {
+      frame.pointId[i] = ids == nullptr ? from : ids[from];
+      if (ids != nullptr) frame.colour[i] = colours[from];
     }
-  });
+  }
 }
 
 }  // namespace
@@ -133,6 +183,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
                   const ThreadPool& pool, Frame& frame) {
   const std::size_t count = buffer.pixels.size();
   const auto width = static_cast<std::size_t>(buffer.width);
+  const auto height = static_cast<std::size_t>(std::max(buffer.height, 0));
   frame.width = buffer.width;
   frame.height = buffer.height;
   frame.colour.resize(count);
@@ -141,31 +192,27 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
   const Colouring colouring(list, view, options, buffer);
   const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
   const FillSizes fills(options, view);
-  const bool grown = !sizes.alwaysOne() || !fills.none();
-  std::vector<std::uint32_t>&ownColours = buffer.scratch.colours, &ownIds = buffer.scratch.ids;
-  if (grown) ownColours.resize(count);
-  std::uint32_t* const colours = grown ? ownColours.data() : frame.colour.data();
-  pool.parallelFor(count, kPixelsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; i += kPixelsAhead)
-      colouring.colour(i, std::min(i + kPixelsAhead, end), colours + i);
-  });
-  if (grown) {
-    pointAtPixels(buffer, ownIds, pool);
+  if (sizes.alwaysOne() && fills.none()) {
+    pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
+      for (std::size_t y = first; y < end; ++y) {
+        colouring.colour(y * width, (y + 1) * width, frame.colour.data() + y * width);
+        finishRow(buffer, options, y, nullptr, nullptr, frame);
+      }
+    });
+  } else {
+    buffer.scratch.colours.resize(count);
+    buffer.scratch.ids.resize(count);
+    pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
+      colouring.colour(first * width, end * width, buffer.scratch.colours.data() + first * width);
+      pointAtPixels(buffer, first * width, end * width);
+    });
     dilate(buffer, sizes, pool);
     fillHoles(buffer, fills, pool);
+    pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
+      for (std::size_t y = first; y < end; ++y)
+        finishRow(buffer, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
+    });
   }
-  pool.parallelFor(static_cast<std::size_t>(std::max(buffer.height, 0)), kRowsAtOnce,
-                   [&](std::size_t first, std::size_t end) {
-                     for (std::size_t y = first; y < end; ++y) {
-                       const std::uint32_t background = backgroundColour(options, static_cast<int>(y), buffer.height);
-                       for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
-                         const std::uint32_t from = pixelId(buffer.pixels[i]);
-                         frame.depth[i] = pixelDepth(buffer.pixels[i]);
-                         frame.pointId[i] = from == Frame::kNoPoint || !grown ? from : ownIds[from];
-                         frame.colour[i] = from == Frame::kNoPoint ? background : colours[grown ? from : i];
-                       }
-                     }
-                   });
   if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);
 }
 

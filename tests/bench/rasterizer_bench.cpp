@@ -5,6 +5,8 @@
 #include <cstdlib>
 
 #include "core/error.h"
+#include "render/batch_plan.h"
+#include "render/cpu_kernel.h"
 #include "render/rasterizer.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -27,40 +29,108 @@ const RenderList& town() {
   return list;
 }
 
+/// All of it, as large as it can be.
 View farView() {
   View view = viewOfBox(test::boundsOf(town()), {1.0, 0.83, -0.71}, 1920, 1080, 1.0);
-  view.eye += (view.target - view.eye) * 0.5;
+  view.eye += (view.target - view.eye) * 0.35;
   return view;
 }
 
 View closeView() {
   View view = farView();
-  view.eye = view.target + (view.eye - view.target) * 0.2;
+  view.eye = view.target + (view.eye - view.target) * 0.15;
   return view;
 }
 
-void draw(benchmark::State& state, Rasterizer& rasterizer, const View& view) {
-  Frame frame;
+View otherEye(View view) {
+  const glm::dvec3 apart = 0.065 * viewBasis(view).right;
+  view.eye += apart;
+  view.target += apart;
+  return view;
+}
+
+/// Each frame by step(), which returns its stats.
+template <typename Step>
+void measure(benchmark::State& state, const Step& step) {
   DrawStats total;
-  for (int warm = 0; warm < 2; ++warm) rasterizer.draw(town(), view, {}, frame);
-  for (auto _ : state) {
-    const DrawStats stats = rasterizer.draw(town(), view, {}, frame);
-    total.pointsDrawn += stats.pointsDrawn;
-    total.uploadMs += stats.uploadMs;
-    total.drawMs += stats.drawMs;
-    total.resolveMs += stats.resolveMs;
-  }
+  for (int warm = 0; warm < 2; ++warm) step();
+  for (auto _ : state) addStats(step(), total);
   const auto frames = static_cast<double>(state.iterations());
-  state.counters["points"] = static_cast<double>(total.pointsDrawn) / frames;
-  state.counters["Mpoints/s"] = static_cast<double>(total.pointsDrawn) / (1000.0 * (total.uploadMs + total.drawMs));
+  const auto points = static_cast<double>(total.pointsDrawn);
+  state.counters["points"] = points / frames;
+  state.counters["Mpoints/s"] = points / (1000.0 * (total.uploadMs + total.drawMs));
+  state.counters["with_resolve"] = points / (1000.0 * (total.uploadMs + total.drawMs + total.resolveMs));
   state.counters["draw_ms"] = total.drawMs / frames;
   state.counters["resolve_ms"] = total.resolveMs / frames;
 }
 
-void cpu(benchmark::State& state, const View& view) {
+void draw(benchmark::State& state, Rasterizer& rasterizer, const View& view, const DrawOptions& options = {}) {
+  Frame frame;
+  measure(state, [&] { return rasterizer.draw(town(), view, options, frame); });
+}
+
+std::unique_ptr<Rasterizer> cpuRasterizer(const benchmark::State& state) {
   RasterizerOptions options;
   options.threads = static_cast<int>(state.range(0));
-  draw(state, *createRasterizer(Backend::cpu, options, nullptr), view);
+  return createRasterizer(Backend::cpu, options, nullptr);
+}
+
+void cpu(benchmark::State& state, const View& view) { draw(state, *cpuRasterizer(state), view); }
+
+void cpuWith(benchmark::State& state, int pointSize, int fill, bool edl, Shading shading) {
+  DrawOptions options;
+  options.pointSize = pointSize;
+  options.fill = fill;
+  options.edl = edl;
+  options.shading = shading;
+  draw(state, *cpuRasterizer(state), farView(), options);
+}
+
+/// Two eyes in one pass over the points, or one after the other.
+void cpuEyes(benchmark::State& state, bool together) {
+  const auto rasterizer = cpuRasterizer(state);
+  const View views[] = {farView(), otherEye(farView())};
+  Frame frames[2];
+  measure(state, [&] {
+    if (together) return rasterizer->drawViews(town(), views, {}, frames);
+    DrawStats sum = rasterizer->draw(town(), views[0], {}, frames[0]);
+    addStats(rasterizer->draw(town(), views[1], {}, frames[1]), sum);
+    return sum;
+  });
+}
+
+/// One block of points again and again: nothing but the kernel, everything in the first-level cache. Arguments: planes;
+/// whether the pixels are nearer than all points already; whether the batch is wholly in the image.
+void kernel(benchmark::State& state) {
+  const auto precision = static_cast<Precision>(state.range(0));
+  const NodeData& node = *town().items.front().node;
+  KernelView view;
+  const View far = farView();
+  DrawPlan plan;
+  planBatches(town(), far, {}, plan);
+  const PlannedBatch& batch = plan.batches.front();
+  const GridTransform& grid = plan.grids[batch.place.grid];
+  view.x = grid.x;
+  view.y = grid.y;
+  view.depth = grid.depth;
+  view.offset = batch.place.offset;
+  view.shift = batch.place.shift;
+  for (int axis = 0; axis < 3; ++axis) view.shift[axis] -= 10 * (static_cast<int>(precision) - 1);
+  view.port = viewport(plan.constants);
+  view.inside = state.range(2) != 0;
+  const std::vector<PackedPixel> pixels(1920 * 1080, state.range(1) != 0 ? packPixel(0, 0) : kEmptyPixel);
+  view.pixels = pixels.data();
+  KernelPoints points;
+  for (auto& plane : points.planes) plane = node.position[0].data();
+  points.precision = precision;
+  points.count = ProjectedBlock::kPoints;
+  ProjectedBlock block;
+  for (auto _ : state) {
+    projectPoints(points, &view, 1, Wanted::front, &block);
+    benchmark::DoNotOptimize(block);
+  }
+  state.counters["Mpoints/s"] =
+      benchmark::Counter(static_cast<double>(points.count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void onGl(benchmark::State& state, Backend backend) {
@@ -73,8 +143,16 @@ void onGl(benchmark::State& state, Backend backend) {
   }
 }
 
-BENCHMARK_CAPTURE(cpu, far, farView())->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK_CAPTURE(cpu, close, closeView())->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+#define STRATA_ON_ONE_AND_TWO(name, ...) \
+  BENCHMARK_CAPTURE(name, __VA_ARGS__)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()
+STRATA_ON_ONE_AND_TWO(cpu, far, farView());
+STRATA_ON_ONE_AND_TWO(cpu, close, closeView());
+STRATA_ON_ONE_AND_TWO(cpuWith, size2_edl, 2, 1, true, Shading::plain);
+STRATA_ON_ONE_AND_TWO(cpuWith, fill7, 1, 7, false, Shading::plain);
+STRATA_ON_ONE_AND_TWO(cpuWith, high_quality, 1, 1, false, Shading::highQuality);
+STRATA_ON_ONE_AND_TWO(cpuEyes, one_after_the_other, false);
+STRATA_ON_ONE_AND_TWO(cpuEyes, together, true);
+BENCHMARK(kernel)->ArgNames({"planes", "hidden", "inside"})->ArgsProduct({{1, 2, 3}, {0, 1}, {0, 1}});
 BENCHMARK_CAPTURE(onGl, compute32, Backend::compute32)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(onGl, points, Backend::points)->Unit(benchmark::kMillisecond)->UseRealTime();
 
