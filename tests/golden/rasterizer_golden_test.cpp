@@ -65,5 +65,31 @@ TEST(RasterizerGolden, LevelsWithLargePoints) {
   expectGolden("town_level_size4", options);
 }
 
+TEST(RasterizerGolden, HighQualityShadingOverAGradient) {
+  DrawOptions options;
+  options.shading = Shading::highQuality;
+  options.pointSize = 2;
+  options.background = {40, 60, 110};
+  options.backgroundBelow = glm::u8vec3(190, 200, 215);
+  expectGolden("town_high_quality", options);
+}
+
+TEST(RasterizerGolden, ClassesOfAClipBoxWithItsHolesFilled) {
+  DrawOptions options;
+  options.colour = ColourMode::classification;
+  options.fill = 5;
+  options.edl = true;
+  options.classes.reset();
+  for (const std::size_t wanted : {2u, 5u, 6u, 9u}) options.classes.set(wanted);
+  options.clip.boxes = {{{456759.0005, 5412305.0005, 290.0}, {456819.0005, 5412365.0005, 340.0}}};
+  expectGolden("town_clip_fill", options);
+}
+
+TEST(RasterizerGolden, Overdraw) {
+  DrawOptions options;
+  options.colour = ColourMode::overdraw;
+  expectGolden("town_overdraw", options);
+}
+
 }  // namespace
 }  // namespace strata

@@ -191,6 +191,29 @@ TEST(NodeCodec, DrawnPositionsLieWithinHalfACellOfTheTrueOnes) {
   }
 }
 
+TEST(NodeCodec, ShowsReturnNumbersAndNormalsWhereTheBytesHoldThem) {
+  std::mt19937_64 random(9);
+  StoreInfo info = storeInfo(random, 20);
+  info.layout = PointLayout({{std::string(attribute::kReturnNumber), ScalarType::u8, 1, {}},
+                             {std::string(attribute::kNormal), ScalarType::f32, 3, {}}});
+  NodePoints points = randomPoints(random, info, 3);
+  const float normals[3][3] = {{0.0f, 0.0f, 2.0f}, {-1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    points.attributes[i * 13] = static_cast<std::byte>(i + 1);
+    std::memcpy(&points.attributes[i * 13 + 1], normals[i], 12);
+  }
+  const EncodedNode node = encodeNode(points, info);
+  const NodeRecord record = recordOf(node, 3);
+  NodeData data;
+  decodeForDrawing(record, info, node.payload, Precision::full30, data);
+  EXPECT_EQ(data.returnNumber, (std::vector<std::uint8_t>{1, 2, 3}));
+  EXPECT_EQ(data.normal, (std::vector<std::uint32_t>{0x7f0000u, 0x000081u, 0u}));
+  decodeForDrawing(record, info, std::span(node.payload).first(drawBytes(record, Precision::full30)), Precision::full30,
+                   data);
+  EXPECT_TRUE(data.returnNumber.empty());
+  EXPECT_TRUE(data.normal.empty());
+}
+
 TEST(NodeCodec, RefusesEveryTruncatedPayload) {
   std::mt19937_64 random(3);
   const StoreInfo info = storeInfo(random, 20);

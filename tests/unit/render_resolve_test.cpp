@@ -72,6 +72,15 @@ TEST(Resolve, ColoursByTheModeThatIsAskedFor) {
   EXPECT_EQ(colours(options), std::pair(classificationColour(2), classificationColour(6)));
   options.colour = ColourMode::level;
   EXPECT_EQ(colours(options), std::pair(levelColour(2), levelColour(2)));
+  options.colour = ColourMode::returnNumber;
+  EXPECT_EQ(colours(options), std::pair(missingColour(), missingColour()));
+  node->returnNumber = {1, 2};
+  EXPECT_EQ(colours(options), std::pair(returnColour(1), returnColour(2)));
+  EXPECT_NE(returnColour(1), returnColour(2));
+  options.colour = ColourMode::normal;
+  EXPECT_EQ(colours(options), std::pair(missingColour(), missingColour()));
+  node->normal = {packNormal({0.0f, 0.0f, 3.0f}), packNormal({-1.0f, 0.0f, 0.0f})};
+  EXPECT_EQ(colours(options), std::pair(packColour(127, 127, 255), packColour(0, 127, 127)));
   node->colour.clear();
   options.colour = ColourMode::rgb;
   EXPECT_EQ(colours(options), std::pair(missingColour(), missingColour()));
