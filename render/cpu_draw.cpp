@@ -113,8 +113,12 @@ void lowerShared(PackedPixel& target, PackedPixel value) {
 
 void lower(PackedPixel& target, PackedPixel value) { target = std::min(target, value); }
 
-void add(std::uint32_t& sum, std::uint32_t value) {
-  std::atomic_ref<std::uint32_t>(sum).fetch_add(value, std::memory_order_relaxed);
+template <typename Word>
+void add(Word& sum, Word value, bool shared) {
+  if (shared)
+    std::atomic_ref<Word>(sum).fetch_add(value, std::memory_order_relaxed);
+  else
+    sum += value;
 }
 
 void fillPixels(std::vector<PackedPixel>& pixels, std::size_t count, const ThreadPool& pool) {
@@ -176,22 +180,25 @@ void drawFront(std::span<CpuTarget> targets, const std::vector<Task>& tasks, con
 void blendNear(std::span<CpuTarget> targets, const std::vector<Task>& tasks, const ClassFilter& filter,
                const DrawOptions& options, const ThreadPool& pool) {
   for (CpuTarget& target : targets) target.buffer.sums.assign(target.buffer.pixels.size(), {});
+  const bool shared = pool.threads() > 1;
   const auto finished = [&](std::size_t view) { return targets[view].buffer.pixels.data(); };
   pool.parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const PlannedBatch& batch = tasks[t].any();
       const std::uint32_t idOfNode = batch.firstId - batch.firstPoint;
-      forEachBlock(
-          targets, tasks[t], filter, Wanted::near, finished, [&](std::size_t view, const ProjectedBlock& block) {
-            for (std::size_t i = 0; i < block.count; ++i) {
-              const std::uint32_t colour = pointColour(*batch.node, block.id[i] - idOfNode, options, batch.precision);
-              ColourSum& sum = targets[view].buffer.sums[block.pixel[i]];
-              add(sum.red, colour & 255u);
-              add(sum.green, colour >> 8 & 255u);
-              add(sum.blue, colour >> 16 & 255u);
-              add(sum.count, 1);
-            }
-          });
+      const bool hasRgb = options.colour == ColourMode::rgb && !batch.node->colour.empty();
+      const std::uint32_t* const rgb = hasRgb ? batch.node->colour.data() : nullptr;
+      forEachBlock(targets, tasks[t], filter, Wanted::near, finished,
+                   [&](std::size_t view, const ProjectedBlock& block) {
+                     for (std::size_t i = 0; i < block.count; ++i) {
+                       const std::uint32_t point = block.id[i] - idOfNode;
+                       const std::uint64_t colour =
+                           rgb != nullptr ? rgb[point] : pointColour(*batch.node, point, options, batch.precision);
+                       ColourSum& sum = targets[view].buffer.sums[block.pixel[i]];
+                       add(sum.redGreen, (colour & 255u) | (colour >> 8 & 255u) << 32, shared);
+                       add(sum.blueCount, (colour >> 16 & 255u) | std::uint64_t{1} << 32, shared);
+                     }
+                   });
     }
   });
 }
@@ -199,12 +206,14 @@ void blendNear(std::span<CpuTarget> targets, const std::vector<Task>& tasks, con
 void countAll(std::span<CpuTarget> targets, const std::vector<Task>& tasks, const ClassFilter& filter,
               const ThreadPool& pool) {
   for (CpuTarget& target : targets) target.buffer.counts.assign(target.buffer.pixels.size(), 0);
+  const bool shared = pool.threads() > 1;
   const auto finished = [&](std::size_t view) { return targets[view].buffer.pixels.data(); };
   pool.parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       forEachBlock(targets, tasks[t], filter, Wanted::all, finished,
                    [&](std::size_t view, const ProjectedBlock& block) {
-                     for (std::size_t i = 0; i < block.count; ++i) add(targets[view].buffer.counts[block.pixel[i]], 1);
+                     for (std::size_t i = 0; i < block.count; ++i)
+                       add(targets[view].buffer.counts[block.pixel[i]], 1u, shared);
                    });
   });
 }

@@ -64,8 +64,10 @@ std::uint32_t largestCount(const std::vector<std::uint32_t>& counts) {
 }
 
 std::uint32_t meanColour(const ColourSum& sum) {
-  const auto mean = [&sum](std::uint32_t total) { return static_cast<int>((total + sum.count / 2) / sum.count); };
-  return packColour(mean(sum.red), mean(sum.green), mean(sum.blue));
+  const auto mean = [&sum](std::uint32_t total) {
+    return static_cast<int>((std::uint64_t{total} + sum.count() / 2) / sum.count());
+  };
+  return packColour(mean(sum.red()), mean(sum.green()), mean(sum.blue()));
 }
 
 /// Gives each pixel of the buffer its own colour, in no light and one pixel wide.
@@ -119,7 +121,7 @@ class Colouring {
 
   std::uint32_t colourOne(std::size_t pixel, const PointPlace& place) const {
     if (largestCount_ > 0) return heat(buffer_.counts[pixel]);
-    if (blended_) return buffer_.sums[pixel].count > 0 ? meanColour(buffer_.sums[pixel]) : missingColour();
+    if (blended_) return buffer_.sums[pixel].count() > 0 ? meanColour(buffer_.sums[pixel]) : missingColour();
     return options_.colour == ColourMode::precision ? precisionColour(precision(place)) : plain(place);
   }
 

@@ -17,9 +17,15 @@ inline constexpr PackedPixel kEmptyPixel = packPixel(0x7f800000u, Frame::kNoPoin
 constexpr std::uint32_t pixelId(PackedPixel pixel) { return static_cast<std::uint32_t>(pixel); }
 constexpr float pixelDepth(PackedPixel pixel) { return std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32)); }
 
-/// Colours of the points near a pixel's front, for their mean. Holds 2^24 points.
+/// Colours of the points near a pixel's front, for their mean. Holds 2^24 points. Two sums a word, the first named in
+/// the lower half, so that a point takes two additions; in memory the words red, green, blue, count.
 struct ColourSum {
-  std::uint32_t red = 0, green = 0, blue = 0, count = 0;
+  std::uint64_t redGreen = 0, blueCount = 0;
+
+  std::uint32_t red() const { return static_cast<std::uint32_t>(redGreen); }
+  std::uint32_t green() const { return static_cast<std::uint32_t>(redGreen >> 32); }
+  std::uint32_t blue() const { return static_cast<std::uint32_t>(blueCount); }
+  std::uint32_t count() const { return static_cast<std::uint32_t>(blueCount >> 32); }
 };
 
 /// What resolving works with, kept from frame to frame: fresh memory costs more than the work.
