@@ -14,8 +14,9 @@ constexpr float kUpgradeWeight = 0.25f;
 
 }  // namespace
 
-ListBuilder::ListBuilder(const Store& store, std::span<const std::uint32_t> parents, NodeCache& cache)
-    : store_(store), parents_(parents), cache_(cache), marks_(parents.size(), 0) {}
+ListBuilder::ListBuilder(const Store& store, std::span<const std::uint32_t> parents, Precision leastPrecision,
+                         NodeCache& cache)
+    : store_(store), parents_(parents), leastPrecision_(leastPrecision), cache_(cache), marks_(parents.size(), 0) {}
 
 std::uint32_t ListBuilder::takeWhatFits(const Selection& selection) {
   wanted_.clear();
@@ -41,7 +42,7 @@ LoadRequest ListBuilder::requestFor(const SelectedNode& wanted) const {
   const NodeRecord& record = store_.hierarchy().nodes[wanted.node];
   LoadRequest request;
   request.node = wanted.node;
-  request.precision = usefulPrecision(record, wanted.precision);
+  request.precision = usefulPrecision(record, std::max(wanted.precision, leastPrecision_));
   request.priority = wanted.priority;
   request.bytes = drawBytes(record, request.precision);
   request.offset = record.offset;

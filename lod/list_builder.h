@@ -31,7 +31,7 @@ class ListBuilder {
   };
 
   /// The arguments have to outlive the builder.
-  ListBuilder(const Store& store, std::span<const std::uint32_t> parents, NodeCache& cache);
+  ListBuilder(const Store& store, std::span<const std::uint32_t> parents, Precision leastPrecision, NodeCache& cache);
 
   /// Fills `out.list.items` and `out.pins`, which must be empty, and replaces `requests`. A node is drawn when it and
   /// all its ancestors are resident. Nodes out of tries, and all below them, are not asked for again.
@@ -52,6 +52,7 @@ class ListBuilder {
 
   const Store& store_;
   const std::span<const std::uint32_t> parents_;
+  const Precision leastPrecision_;
   NodeCache& cache_;
 
   enum Mark : std::uint32_t { kDrawn, kBlocked, kMissing, kMarks };

@@ -31,7 +31,7 @@ Streamer::Streamer(std::shared_ptr<const Store> store, const StreamerOptions& op
       lookAhead_(options.lookAhead),
       cache_(options.cacheBytes, index_.parent),
       failed_(options.firstRetry),
-      builder_(*store_, index_.parent, cache_) {
+      builder_(*store_, index_.parent, options.leastPrecision, cache_) {
   newest_.selection = options.selection;
   for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<StreamedNode>());
   for (std::size_t i = 0; i < loaderCount(options); ++i)

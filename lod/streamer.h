@@ -45,6 +45,7 @@ struct StreamerOptions {
   SelectionOptions selection;
   std::uint64_t cacheBytes = std::uint64_t{1} << 30;  ///< cap on decoded nodes; buffers on their way are beside it
   int loaderThreads = 1;                              ///< at least 1
+  Precision leastPrecision = Precision::low10;        ///< of what is read, whatever the view needs
   bool lookAhead = true;                              ///< load for the view that setView() says is to come
   ReadLimits together;                                ///< what is read at once; `nodes` is as many as there are buffers
   std::chrono::milliseconds firstRetry{250};          ///< after a node has failed to load; each further wait is longer

@@ -14,7 +14,7 @@ constexpr int kMostLoaders = 64;
 
 /// What CLI11 fills in before names become values.
 struct RawOptions {
-  std::string backend = "auto", size = "1920x1080", failAbove;
+  std::string backend = "auto", size = "1920x1080", occlusion = "on", failAbove;
 };
 
 void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
@@ -38,6 +38,10 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->capture_default_str();
   app.add_flag("--edl", o.edl, "eye-dome lighting");
   addDrawFlags(app, o.draw);
+  app.add_option("--occlusion", raw.occlusion,
+                 "on: closed surfaces hide what is behind; exact: only where they leave no pixel open; off")
+      ->check(CLI::IsMember({"on", "exact", "off"}))
+      ->capture_default_str();
   app.add_option("--loader-threads", o.streamer.loaderThreads, "threads that read nodes")
       ->check(CLI::Range(1, kMostLoaders))
       ->capture_default_str();
@@ -94,6 +98,9 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   } catch (const CLI::ParseError& error) {
     throw UsageError(error.what());
   }
+  OcclusionOptions& occlusion = options.streamer.selection.occlusion;
+  if (raw.occlusion == "exact") occlusion = OcclusionOptions::exact();
+  occlusion.enabled = raw.occlusion != "off";
   options.backend = parseBackend(raw.backend);
   options.size = parseSize(raw.size);
   options.colour = colourOf(options.draw);

@@ -112,6 +112,9 @@ std::vector<std::pair<std::string, double>> counters(const StreamerStats& s) {
           {"refusals", count(s.refusals)},
           {"duplicates", count(s.duplicates)},
           {"over capacity", count(s.overCapacity)},
+          {"reads", count(s.reads)},
+          {"nodes loaded ahead", count(s.nodesAhead)},
+          {"nodes hidden at the end", count(s.occluded)},
           {"LOD passes", count(s.lodPasses)},
           {"peak resident bytes", count(s.peakResidentBytes)}};
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
+#include <utility>
 
 namespace strata {
 namespace {
@@ -176,6 +177,21 @@ void CameraControl::advance(double seconds) {
   view_ = glided(glide_->from, glide_->to, glide_->u);
   if (glide_->u >= 1.0) glide_.reset();
   resize(width, height);
+}
+
+View CameraMotion::ahead(const View& now, std::chrono::steady_clock::time_point time) {
+  const double seconds = std::chrono::duration<double>(time - lastTime_).count();
+  const View last = std::exchange(last_, now);
+  lastTime_ = time;
+  View view = now;
+  const double frames = kAheadSeconds / seconds;
+  const glm::dvec3 way = (now.eye - last.eye) * frames;
+  // A jump, or the first frame after a pause, is no motion to go on with.
+  constexpr double kLongestPause = 0.25;
+  if (!(seconds > 0.0 && seconds < kLongestPause) || glm::length(way) > glm::length(now.target - now.eye)) return view;
+  view.eye += way;
+  view.target += (now.target - last.target) * frames;
+  return view;
 }
 
 void CameraControl::resize(int width, int height) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -56,6 +57,19 @@ View approached(const View& view, const glm::dvec3& point);
 /// Where a glide is after share `u` of its way, 0 to 1: the target moves straight, the eye swings around it, the
 /// distance changes by equal ratios in equal times; it starts and ends slowly.
 View glided(const View& from, const View& to, double u);
+
+/// Where the camera will be if it goes on as it does: by the change of the view over the last frame.
+class CameraMotion {
+ public:
+  static constexpr double kAheadSeconds = 0.5;
+
+  /// Once a frame, with the view of this frame.
+  View ahead(const View& now, std::chrono::steady_clock::time_point time);
+
+ private:
+  View last_;
+  std::chrono::steady_clock::time_point lastTime_{};
+};
 
 /// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
 class CameraControl {

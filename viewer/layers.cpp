@@ -36,6 +36,10 @@ void Layers::setShown(const std::vector<bool>& shown) {
   setView(view_);
 }
 
+void Layers::setView(const View& view, const View& ahead) {
+  for (const auto& streamer : streamers_) streamer->setView(view, ahead);
+}
+
 void Layers::setView(const View& view) {
   view_ = view;
   for (std::size_t i = 0; i < streamers_.size(); ++i)

@@ -20,6 +20,8 @@ class Layers {
   void setShown(const std::vector<bool>& shown);
 
   void setView(const View& view);
+  /// And where the camera will soon be.
+  void setView(const View& view, const View& ahead);
   void setSelection(const SelectionOptions& selection);
   /// Valid until the next call of this or of waitUntilComplete().
   const RenderList& beginFrame();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <optional>
@@ -18,6 +19,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for full detail of one view
 constexpr std::chrono::milliseconds kDetailStep{2};         // how finely the detail of the first view is watched
 constexpr int kMostUploadFrames = 1000;
+constexpr double kAheadSeconds = 0.5;      // for how far along the path nodes are loaded before they are seen
 constexpr int kReportPictures = 16;        // that the report shows
 constexpr std::size_t kHeldPictures = 24;  // waiting to be encoded; 8 MB each at 1920x1080
 
@@ -158,6 +160,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
   std::optional<VideoWriter> video;
   if (!options.video.empty()) video.emplace(options.video, options.size.width, options.size.height, path.fps);
   const std::vector<int> cuts = cutFrames(path);
+  const int aheadFrames = static_cast<int>(std::lround(kAheadSeconds * path.fps));
   std::vector<View> sinceJump;
   played.frames.reserve(static_cast<std::size_t>(frames));
   Clock::time_point due = Clock::now();
@@ -168,7 +171,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
       sinceJump.clear();
     }
     sinceJump.push_back(now);
-    streamer.setView(now);
+    streamer.setView(now, view(std::min(index + aheadFrames, frames - 1)));
     double settleMs = 0.0;
     if (options.settle) {
       const Clock::time_point start = Clock::now();

@@ -194,7 +194,7 @@ class ViewerApp {
   void drawFrame(int width, int height) {
     control_.resize(width, height);
     const auto start = std::chrono::steady_clock::now();
-    layers_.setView(control_.view());
+    layers_.setView(control_.view(), motion_.ahead(control_.view(), start));
     const RenderList& list = layers_.beginFrame();
     list_ = &list;
     stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
@@ -250,6 +250,7 @@ class ViewerApp {
   Screen screen_;
   std::unique_ptr<Rasterizer> rasterizer_;
   CameraControl control_;
+  CameraMotion motion_;
   ViewerSettings settings_;
   ViewerStats stats_;
   ToolsState tools_;

@@ -1,0 +1,353 @@
+// What streaming costs and saves, as tables of docs/benchmarks.md:
+//   streaming_bench occlusion STORE VIEWS.json...   Kanzok 2015, Table 3: each view with and without occlusion
+//   streaming_bench slow STORE PATH.json            frame times of a flight over disks that are instant, slow and
+//   broken streaming_bench ahead STORE PATH.json           the same flight with and without looking ahead, from a slow
+//   disk streaming_bench planes STORE PATH.json          bytes read by need and in full streaming_bench loaders STORE
+//   the loader's speed against plain reading streaming_bench open [NODES]                    opening a store of so many
+//   nodes
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/error.h"
+#include "io/store_files.h"
+#include "lod/streamer.h"
+#include "viewer/camera_path.h"
+#include "viewer/drawing.h"
+#include "viewer/measures.h"
+
+namespace strata {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
+
+constexpr PictureSize kPicture{1280, 720};
+constexpr double kAheadSeconds = 0.5;
+
+double msSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// A disk with faults.
+class TroubledDisk final : public ByteSource {
+ public:
+  struct Trouble {
+    std::chrono::microseconds latency{0};  ///< of every read
+    double bytesPerSecond = 0.0;           ///< 0 = as fast as it goes
+    double failing = 0.0, garbage = 0.0;   ///< shares of the reads
+  };
+
+  TroubledDisk(const std::string& path, const Trouble& trouble) : file_(openFile(path)), trouble_(trouble) {}
+
+  std::uint64_t size() const override { return file_->size(); }
+  const std::string& name() const override { return file_->name(); }
+  void read(std::uint64_t offset, std::span<std::byte> out) const override {
+    const std::uint64_t call = calls_.fetch_add(1);
+    auto wait = std::chrono::duration<double>(trouble_.latency);
+    if (trouble_.bytesPerSecond > 0.0)
+      wait += std::chrono::duration<double>(static_cast<double>(out.size()) / trouble_.bytesPerSecond);
+    if (wait.count() > 0.0) std::this_thread::sleep_for(wait);
+    const double dice = static_cast<double>((call * 0x9e3779b97f4a7c15u) >> 40) / static_cast<double>(1 << 24);
+    if (dice < trouble_.failing) throw Error(name(), "the disk failed");
+    file_->read(offset, out);
+    if (dice > 1.0 - trouble_.garbage) out[out.size() / 2] ^= std::byte{0x55};
+  }
+
+ private:
+  const std::unique_ptr<ByteSource> file_;
+  const Trouble trouble_;
+  mutable std::atomic<std::uint64_t> calls_{0};
+};
+
+std::shared_ptr<const Store> openWith(const std::string& store, const TroubledDisk::Trouble& trouble) {
+  return std::make_shared<const Store>(store, std::make_unique<TroubledDisk>(store + "/" + kPointsFile, trouble));
+}
+
+struct Flight {
+  std::vector<double> frameMs;
+  double missing = 0.0;  ///< mean share of the wanted nodes that a frame had to do without
+  int wholeFrames = 0;   ///< frames that lacked nothing
+  double firstDetailMs = 0.0, lastDetailMs = 0.0;
+  StreamerStats stats;
+
+  double percent(double p) const { return percentile(frameMs, p); }
+};
+
+/// Flies in real time; the first view is waited for.
+Flight fly(std::shared_ptr<const Store> store, const CameraPath& path, const StreamerOptions& options, bool ahead) {
+  const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
+  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(Backend::cpu);
+  Streamer streamer(store, options);
+  const auto view = [&](double t) {
+    return viewAt(path, path.keys.front().t + std::clamp(t, 0.0, path.duration()), kPicture.width, kPicture.height);
+  };
+  Flight flight;
+  auto start = Clock::now();
+  streamer.setView(view(0.0));
+  streamer.waitUntilComplete(120s);
+  flight.firstDetailMs = msSince(start);
+  Frame frame;
+  start = Clock::now();
+  for (int i = 0; i < path.frames(); ++i) {
+    const double t = i / path.fps;
+    std::this_thread::sleep_until(start +
+                                  std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t)));
+    const auto began = Clock::now();
+    const View now = view(t);
+    if (ahead)
+      streamer.setView(now, view(t + kAheadSeconds));
+    else
+      streamer.setView(now);
+    const RenderList& list = streamer.beginFrame();
+    rasterizer->draw(list, now, draw, frame);
+    flight.frameMs.push_back(msSince(began));
+    const double wanted = static_cast<double>(list.items.size()) + list.missingNodes;
+    flight.missing += wanted > 0.0 ? list.missingNodes / wanted : 0.0;
+    flight.wholeFrames += list.missingNodes == 0 ? 1 : 0;
+  }
+  flight.missing /= path.frames();
+  start = Clock::now();
+  streamer.waitUntilComplete(120s);
+  flight.lastDetailMs = msSince(start);
+  flight.stats = streamer.stats();
+  return flight;
+}
+
+// --- occlusion
+
+struct Complete {
+  double ms = 0.0, frameMs = 0.0;
+  std::size_t nodes = 0;
+  std::uint64_t points = 0;
+  StreamerStats stats;
+};
+
+Complete complete(const std::string& storePath, const View& view, bool occlusion) {
+  const auto store = openWith(storePath, {.latency = 1ms, .bytesPerSecond = 100e6});
+  StreamerOptions options;
+  options.selection.occlusion.enabled = occlusion;
+  options.cacheBytes = std::uint64_t{4} << 30;
+  options.selection.pointBudget = SelectionOptions::kMaxPointBudget;
+  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(Backend::cpu);
+  const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
+  Streamer streamer(store, options);
+  Complete result;
+  const auto start = Clock::now();
+  streamer.setView(view);
+  streamer.waitUntilComplete(300s);
+  result.ms = msSince(start);
+  const RenderList& list = streamer.beginFrame();
+  result.nodes = list.items.size();
+  result.points = list.pointCount;
+  std::vector<double> times;
+  Frame frame;
+  for (int i = 0; i < 7; ++i) {
+    const auto began = Clock::now();
+    rasterizer->draw(list, view, draw, frame);
+    times.push_back(msSince(began));
+  }
+  result.frameMs = percentile(times, 50.0);
+  result.stats = streamer.stats();
+  return result;
+}
+
+/// The views are the keys of the paths.
+void occlusion(const std::string& store, const CameraPath& views) {
+  std::printf(
+      "| view | occlusion | nodes drawn | points | frame ms | nodes loaded | MB read | complete after ms | LOD ms |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
+  for (std::size_t i = 0; i < views.keys.size(); ++i) {
+    const View view = viewAt(views, views.keys[i].t, kPicture.width, kPicture.height);
+    for (const bool on : {true, false}) {
+      const Complete c = complete(store, view, on);
+      std::printf("| %zu | %s | %zu | %.2f M | %.1f | %llu | %.1f | %.0f | %.2f |\n", i + 1, on ? "with" : "without",
+                  c.nodes, 1e-6 * static_cast<double>(c.points), c.frameMs,
+                  static_cast<unsigned long long>(c.stats.nodesLoaded), 1e-6 * static_cast<double>(c.stats.bytesRead),
+                  c.ms, c.stats.lodMsMean);
+    }
+  }
+}
+
+// --- flights
+
+void printFlight(const char* name, const Flight& f) {
+  std::printf("| %s | %.1f | %.1f | %.1f | %.2f %% | %d of %zu | %.0f | %.1f | %llu | %llu | %llu |\n", name,
+              f.percent(50), f.percent(99), f.percent(100), 100.0 * f.missing, f.wholeFrames, f.frameMs.size(),
+              f.lastDetailMs, 1e-6 * static_cast<double>(f.stats.bytesRead),
+              static_cast<unsigned long long>(f.stats.nodesLoaded), static_cast<unsigned long long>(f.stats.failures),
+              static_cast<unsigned long long>(f.stats.nodesGivenUp));
+}
+
+void printFlightHead() {
+  std::printf(
+      "| disk | p50 ms | p99 ms | max ms | nodes missing | whole frames | whole at the end after ms | MB read | "
+      "nodes loaded | failures | given up |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+}
+
+void slow(const std::string& store, const CameraPath& path) {
+  printFlightHead();
+  fly(openWith(store, {}), path, {}, false);  // warms the page cache
+  printFlight("instant", fly(openWith(store, {}), path, {}, false));
+  printFlight("200 ms a read", fly(openWith(store, {.latency = 200ms}), path, {}, false));
+  StreamerOptions four;
+  four.loaderThreads = 4;
+  printFlight("200 ms a read, 4 loaders", fly(openWith(store, {.latency = 200ms}), path, four, false));
+  printFlight("10 % of reads fail", fly(openWith(store, {.failing = 0.1}), path, {}, false));
+  printFlight("10 % of reads are garbage", fly(openWith(store, {.garbage = 0.1}), path, {}, false));
+}
+
+void ahead(const std::string& store, const CameraPath& path) {
+  printFlightHead();
+  for (const auto latency : {5ms, 20ms, 50ms}) {
+    for (const bool on : {false, true}) {
+      const std::string name = std::to_string(latency.count()) + " ms a read" + (on ? ", looking ahead" : "");
+      printFlight(name.c_str(), fly(openWith(store, {.latency = latency, .bytesPerSecond = 200e6}), path, {}, on));
+    }
+  }
+}
+
+void planes(const std::string& store, const CameraPath& path) {
+  printFlightHead();
+  StreamerOptions full;
+  full.leastPrecision = Precision::full30;
+  printFlight("all planes", fly(openWith(store, {}), path, full, false));
+  printFlight("planes by need", fly(openWith(store, {}), path, {}, false));
+}
+
+// --- the loader
+
+/// Everything, most urgent first, over and over nothing: how fast the loaders alone are.
+void loaders(const std::string& storePath) {
+  const std::string file = storePath + "/" + kPointsFile;
+  const auto plain = [&file] {
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    std::vector<std::byte> buffer(std::size_t{1} << 20);
+    const auto start = Clock::now();
+    std::uint64_t bytes = 0;
+    for (ssize_t got = 0; (got = ::read(descriptor, buffer.data(), buffer.size())) > 0;)
+      bytes += static_cast<std::uint64_t>(got);
+    ::close(descriptor);
+    return 1e-6 * static_cast<double>(bytes) / (1e-3 * msSince(start));
+  };
+  plain();
+  std::printf("| what | MB/s | M points/s |\n|---|---|---|\n| plain sequential reading | %.0f | |\n", plain());
+  for (const bool occluders : {false, true}) {
+    for (const int threads : {1, 2, 4}) {
+      const auto store = std::make_shared<const Store>(storePath);
+      StreamerOptions options;
+      options.loaderThreads = threads;
+      options.cacheBytes = std::uint64_t{8} << 30;
+      options.leastPrecision = Precision::full30;
+      options.selection.pointsPerPixel = 1e9;
+      options.selection.minimumPixels = 0.0;
+      options.selection.pointBudget = SelectionOptions::kMaxPointBudget;
+      options.selection.occlusion = {.enabled = occluders, .gapPixels = 0.0, .openGapPixels = 0.0};
+      Streamer streamer(store, options);
+      const auto start = Clock::now();
+      streamer.setView(viewOfBox(store->info().bounds, {0.3, 0.4, -1.0}, 1280, 720, 1.0));
+      streamer.waitUntilComplete(120s);
+      const double seconds = 1e-3 * msSince(start);
+      std::printf("| %d loader%s%s | %.0f | %.1f |\n", threads, threads > 1 ? "s" : "",
+                  occluders ? ", finding occluders" : "",
+                  1e-6 * static_cast<double>(streamer.stats().bytesRead) / seconds,
+                  1e-6 * static_cast<double>(streamer.beginFrame().pointCount) / seconds);
+    }
+  }
+}
+
+// --- opening
+
+/// A full quadtree over flat ground, without payloads.
+void openLarge(std::uint64_t wanted) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "strata-open-bench.strata";
+  std::filesystem::create_directories(folder);
+  StoreInfo info;
+  info.program = "streaming_bench";
+  info.cubeBits = 24;
+  info.layout = PointLayout(std::vector<Attribute>{});
+  info.bounds = info.rootCube();
+  Hierarchy hierarchy;
+  std::vector<NodeKey> keys{NodeKey{}};
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    const Box cube = nodeCube(keys[i], info.rootCube());
+    NodeRecord record{};
+    record.key = keys[i].code;
+    record.contourClass = static_cast<std::uint8_t>(ContourClass::planar);
+    record.prefixes = 1;
+    record.spacing = static_cast<float>(cube.size().x / 100.0);
+    for (int axis = 0; axis < 3; ++axis) {
+      record.centre[axis] = cube.centre()[axis];
+      record.halfAxis[axis][axis] = static_cast<float>(cube.size()[axis] / (axis == 2 ? 100.0 : 2.0));
+    }
+    record.offset = sizeof(PointsHeader);
+    if (keys.size() + 4 <= wanted && keys[i].level() < 12) {
+      record.firstChild = static_cast<std::uint32_t>(keys.size());
+      for (const int octant : {0, 2, 4, 6}) {
+        record.childMask = static_cast<std::uint8_t>(record.childMask | 1 << octant);
+        keys.push_back(keys[i].child(octant));
+      }
+    }
+    info.levels = std::max(info.levels, keys[i].level() + 1);
+    hierarchy.nodes.push_back(record);
+  }
+  info.nodes = hierarchy.nodes.size();
+  {
+    std::FILE* points = std::fopen((folder / kPointsFile).c_str(), "wb");
+    const PointsHeader header = pointsHeader();
+    std::fwrite(&header, sizeof header, 1, points);
+    std::fclose(points);
+  }
+  writeStoreFiles(folder.string(), info, hierarchy, sizeof(PointsHeader));
+  std::printf("| nodes | opening ms | index for streaming ms |\n|---|---|---|\n");
+  for (int i = 0; i < 3; ++i) {
+    auto start = Clock::now();
+    const Store store(folder.string());
+    const double openMs = msSince(start);
+    start = Clock::now();
+    const HierarchyIndex index = indexHierarchy(store.hierarchy());
+    std::printf("| %zu | %.0f | %.0f |\n", index.parent.size(), openMs, msSince(start));
+  }
+  std::filesystem::remove_all(folder);
+}
+
+int run(const std::vector<std::string>& arguments) {
+  const std::string what = arguments.empty() ? "" : arguments[0];
+  if (what == "open") {
+    openLarge(arguments.size() > 1 ? std::stoull(arguments[1]) : 2'000'000);
+  } else if (what == "loaders" && arguments.size() == 2) {
+    loaders(arguments[1]);
+  } else if (arguments.size() == 3) {
+    const CameraPath path = readCameraPath(arguments[2]);
+    if (what == "occlusion") occlusion(arguments[1], path);
+    if (what == "slow") slow(arguments[1], path);
+    if (what == "ahead") ahead(arguments[1], path);
+    if (what == "planes") planes(arguments[1], path);
+  } else {
+    std::fprintf(stderr, "error: see the head of tests/bench/streaming_bench.cpp\n");
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace strata
+
+int main(int argc, char** argv) {
+  try {
+    return strata::run({argv + 1, argv + argc});
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 1;
+  }
+}
