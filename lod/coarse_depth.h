@@ -10,7 +10,8 @@
 
 namespace strata {
 
-/// When a surface counts as closed, by the distance between its points on the screen.
+/// When a surface counts as closed, by Occluder::gap on the screen. By default as the scan shows it: a surface without
+/// a hole hides what is behind it even from so near that the pixels between its points show it.
 struct OcclusionOptions {
   bool enabled = true;
   double gapPixels = 256.0;            ///< of a surface that is loaded to its last point

@@ -35,8 +35,8 @@ struct CellPlane {
 /// The node's points sorted by cell, each as its place in the cell in 1/1024 of the cell's side.
 class PointsByCell {
  public:
-  PointsByCell(const NodeData& node, const Box& cube) {
-    const double perMetre = 1024.0 * kCells / cube.size().x;
+  PointsByCell(const NodeData& node, const Box& cube, int cellsAlong) {
+    const double perMetre = 1024.0 * cellsAlong / cube.size().x;
     std::vector<glm::ivec3> places(node.pointCount());
     for (const Batch& batch : node.batches) {
       glm::vec3 start, step;
@@ -53,7 +53,7 @@ class PointsByCell {
         const std::uint32_t p = positions[i];
         const auto place = [&](glm::length_t axis, std::uint32_t coordinate) {
           const int at = static_cast<int>(start[axis] + step[axis] * static_cast<float>(static_cast<int>(coordinate)));
-          return std::min(std::max(at, 0), 1024 * kCells - 1);
+          return std::min(std::max(at, 0), 1024 * cellsAlong - 1);
         };
         out[i] = {place(0, p & 1023), place(1, p >> 10 & 1023), place(2, p >> 20)};
       }
@@ -208,6 +208,13 @@ float areaOf(const Occluder& occluder) {
   return 0.5f * glm::length(twice);
 }
 
+/// So many that those which a surface crosses have about a hundred points: three sides of the cube have 3 n² of them.
+int cellsFor(std::uint32_t points) {
+  int cells = kCells;
+  while (cells > 4 && points < 80u * 3u * static_cast<std::uint32_t>(cells * cells)) cells /= 2;
+  return cells;
+}
+
 glm::ivec3 cellAt(std::size_t cell) {
   return {static_cast<int>(cell / (kCells * kCells)), static_cast<int>(cell / kCells % kCells),
           static_cast<int>(cell % kCells)};
@@ -216,7 +223,8 @@ glm::ivec3 cellAt(std::size_t cell) {
 /// Finds the closed planes of a node's cells.
 class Finder {
  public:
-  Finder(const NodeData& node, const Box& cube, float layer) : points_(node, cube), layer_(layer) {}
+  Finder(const NodeData& node, const Box& cube, int cellsAlong, float layer)
+      : points_(node, cube, cellsAlong), cellsAlong_(cellsAlong), layer_(layer) {}
 
   struct Found {
     std::size_t cell = 0;
@@ -238,7 +246,7 @@ class Finder {
         for (const int side : {-1, 1}) {
           glm::ivec3 beside = cellAt(cell);
           beside[axis] += side;
-          if (beside[axis] < 0 || beside[axis] >= kCells) continue;
+          if (beside[axis] < 0 || beside[axis] >= cellsAlong_) continue;
           CellPlane plane = found_[i].plane;
           plane.offset -= plane.normal[axis] * static_cast<float>(side);
           const auto to = static_cast<std::size_t>((beside.x * kCells + beside.y) * kCells + beside.z);
@@ -280,6 +288,7 @@ class Finder {
   }
 
   const PointsByCell points_;
+  const int cellsAlong_;
   const float layer_;  ///< half its thickness, in sides of a cell
   std::vector<Found> found_;
   // The planes of a cell: a list through found_, by position + 1.
@@ -292,7 +301,8 @@ class Finder {
 void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask, OccluderSet& out) {
   out.occluders.clear();
   out.origin = cube.centre();
-  const double side = cube.size().x / kCells;
+  const int cellsAlong = cellsFor(node.pointCount());
+  const double side = cube.size().x / cellsAlong;
   out.cellSide = side;
   if (!(side > 0.0) || node.pointCount() < OccluderSet::kLeastPoints) return;
   double coarseness = 0.0;  // of the positions used, in cells
@@ -301,7 +311,7 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
       if (batch.bits[axis] > 10) coarseness = std::max(coarseness, batch.boxSize[axis] / 2048.0 / side);
   const float layer = kLayer + static_cast<float>(coarseness);
   const auto metres = static_cast<float>(side);
-  const std::vector<Finder::Found> all = Finder(node, cube, layer).find();
+  const std::vector<Finder::Found> all = Finder(node, cube, cellsAlong, layer).find();
   out.occluders.reserve(all.size());
   for (const Finder::Found& found : all) {
     const CellPlane& plane = found.plane;
@@ -309,15 +319,15 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
     clipToCell(plane, occluder);
     if (occluder.corners < 3 || areaOf(occluder) < kLeastArea) continue;
     const glm::ivec3 at = cellAt(found.cell);
-    const glm::vec3 centre = glm::vec3(at) + 0.5f - 0.5f * kCells;
+    const glm::vec3 centre = glm::vec3(at) + 0.5f - 0.5f * static_cast<float>(cellsAlong);
     for (std::size_t k = 0; k < occluder.corners; ++k) occluder.corner[k] = (occluder.corner[k] + centre) * metres;
     occluder.normal = plane.normal;
     occluder.offset = (plane.offset + glm::dot(plane.normal, centre)) * metres;
     const float square = metres / static_cast<float>(found.grid);
     occluder.gap = square / std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]);
     occluder.back = layer * metres + 0.5f * occluder.gap;
-    constexpr int kHalf = kCells / 2;
-    const int octant = (at.x >= kHalf ? 4 : 0) + (at.y >= kHalf ? 2 : 0) + (at.z >= kHalf ? 1 : 0);
+    const int half = cellsAlong / 2;
+    const int octant = (at.x >= half ? 4 : 0) + (at.y >= half ? 2 : 0) + (at.z >= half ? 1 : 0);
     occluder.whole = (childMask >> octant & 1) == 0;
     out.occluders.push_back(occluder);
   }

@@ -25,7 +25,7 @@ struct Occluder {
 
 /// What of a node hides things behind it, found from its points when it is loaded.
 struct OccluderSet {
-  static constexpr int kCells = 8;        ///< of a node's cube, along each axis
+  static constexpr int kCells = 8;        ///< of a node's cube, along each axis; 4 where it has few points
   static constexpr int kFinestGrid = 16;  ///< squares along a cell's side in which points are looked for
   static constexpr int kCoarsestGrid = 4;
   static constexpr std::uint32_t kLeastPoints = 16;  ///< of a cell that is looked at; no occluder has fewer
@@ -39,10 +39,10 @@ struct OccluderSet {
 
 /// A contour is a bound, and what is inside it may be full of holes: a facade has windows, a room's box is empty. So
 /// occluders are not contours (as in Kanzok 2015, 3.2.2) but pieces of them that are known to be covered: the node's
-/// cube is cut into 8 x 8 x 8 cells; a plane is fitted to the points of each (smallest principal axis); the cell's side
-/// that faces the plane most is cut into 16 x 16 squares, and where every square that the plane crosses inside the cell
-/// holds a point near the plane (else every one of 8 x 8 or 4 x 4), the plane's part in the cell is an occluder. Pieces
-/// of one wall in neighbouring cells share their edges.
+/// cube is cut into 8 x 8 x 8 cells (fewer for few points); a plane is fitted to the points of each (smallest principal
+/// axis); the cell's side that faces the plane most is cut into 16 x 16 squares, and where every square that the plane
+/// crosses inside the cell holds a point near the plane (else every one of 8 x 8 or 4 x 4), the plane's part in the
+/// cell is an occluder. Pieces of one wall in neighbouring cells share their edges.
 ///
 /// `cube` is the node's, `childMask` that of its record. Uses the leading 10 bits of the positions. `out` is replaced.
 void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask, OccluderSet& out);

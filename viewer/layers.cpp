@@ -37,7 +37,9 @@ void Layers::setShown(const std::vector<bool>& shown) {
 }
 
 void Layers::setView(const View& view, const View& ahead) {
-  for (const auto& streamer : streamers_) streamer->setView(view, ahead);
+  view_ = view;
+  for (std::size_t i = 0; i < streamers_.size(); ++i)
+    if (shown_[i]) streamers_[i]->setView(view, ahead);
 }
 
 void Layers::setView(const View& view) {
