@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLockFile = "lock";
-constexpr std::array<std::string_view, 3> kStoreFiles{kInfoFile, kHierarchyFile, kPointsFile};
+constexpr std::array<std::string_view, 4> kStoreFiles{kInfoFile, kHierarchyFile, kPointsFile, kNewPointsFile};
 
 /// The name of an entry that a store, or a store being built, does not have; empty where there is none.
 std::string strangeEntry(const std::string& folder) {

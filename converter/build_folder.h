@@ -3,6 +3,9 @@
 
 namespace strata {
 
+/// points.bin with normals, beside the one without until it takes that one's name.
+inline constexpr const char* kNewPointsFile = "points-normals.bin";
+
 /// Throws Error when a store cannot be made at `output`: something is there that may not be replaced, or no folder
 /// holds it. With `force` a store is replaced, but only a folder that holds the three files of a store and nothing
 /// else.

@@ -34,12 +34,12 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 /// The largest planes, and what is left of them as one.
 std::vector<PlaneSize> fewPlanes(std::vector<PlaneSize> planes) {
   std::stable_sort(planes.begin(), planes.end(),
-                   [](const PlaneSize& a, const PlaneSize& b) { return a.storedBytes > b.storedBytes; });
+                   [](const PlaneSize& a, const PlaneSize& b) { return a.bytes > b.bytes; });
   while (planes.size() > kMostPlaneLines) {
     PlaneSize& last = planes[planes.size() - 2];
     last.name = "others";
     last.rawBytes += planes.back().rawBytes;
-    last.storedBytes += planes.back().storedBytes;
+    last.bytes += planes.back().bytes;
     planes.pop_back();
   }
   return planes;
@@ -67,7 +67,7 @@ void addLevels(std::string& text, const ConvertReport& report) {
 void addPlanes(std::string& text, const ConvertReport& report) {
   const auto points = static_cast<double>(report.points);
   for (const PlaneSize& plane : fewPlanes(report.planes)) {
-    const auto raw = static_cast<double>(plane.rawBytes), stored = static_cast<double>(plane.storedBytes);
+    const auto raw = static_cast<double>(plane.rawBytes), stored = static_cast<double>(plane.bytes);
     addLine(text, "  %-22s %6.2f of %5.2f bytes a point, %3.0f %%", plane.name.c_str(), ratio(stored, points),
             ratio(raw, points), 100.0 * ratio(stored, raw));
   }
@@ -109,7 +109,7 @@ std::string summaryJson(const ConvertReport& report, const RunCost& cost) {
     stageCpu[stage.name] = stage.cpuSeconds;
   }
   for (const PlaneSize& plane : report.planes)
-    planes[plane.name] = {{"raw_bytes", plane.rawBytes}, {"stored_bytes", plane.storedBytes}};
+    planes[plane.name] = {{"raw_bytes", plane.rawBytes}, {"stored_bytes", plane.bytes}};
   const Json json{{"points", report.points},
                   {"nodes", report.nodes},
                   {"seconds", cost.seconds},

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "converter/add_normals.h"
 #include "converter/build_folder.h"
 #include "converter/chunk_builder.h"
 #include "converter/disk_room.h"
@@ -231,11 +232,21 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   mergeChunks(frame, std::move(tops), spill, sink, control);
 
   clock.begin(stage::kWrite);
-  const Hierarchy hierarchy = sink.finish();
+  Hierarchy hierarchy = sink.finish();
   StoreInfo info = frame.info;
   info.nodes = hierarchy.nodes.size();
   for (const NodeRecord& node : hierarchy.nodes) info.levels = std::max(info.levels, NodeKey{node.key}.level() + 1);
-  writeStoreFiles(folder.path(), info, hierarchy, sink.bytes());
+  const std::string pointsPath = folder.path() + "/" + kPointsFile;
+  std::uint64_t normalBytes = 0;
+  if (normalsMissing(info, options, control)) {
+    clock.begin(stage::kNormals);
+    const std::string newPath = folder.path() + "/" + kNewPointsFile;
+    normalBytes = addNormals(info, hierarchy, pointsPath, newPath, viewpointOf(sources), options, control);
+    fs::rename(newPath, pointsPath);
+    normalBytes += fs::file_size(pointsPath);
+    clock.begin(stage::kWrite);
+  }
+  writeStoreFiles(folder.path(), info, hierarchy, fs::file_size(pointsPath));
   folder.publish();
   clock.end();
 
@@ -243,7 +254,8 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   report.nodes = info.nodes;
   report.skipped = info.skipped;
   countLevels(hierarchy, report);
-  report.tempPeakBytes = spill.peakFileBytes();
+  report.planes = planeSizes(Store(options.output));
+  report.tempPeakBytes = std::max(spill.peakFileBytes(), normalBytes);
   for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
     report.outputBytes += fs::file_size(options.output + "/" + file);
 }

@@ -8,6 +8,7 @@
 
 #include "converter/sampling.h"
 #include "core/log.h"
+#include "io/plane_sizes.h"
 #include "io/point_source.h"
 
 namespace strata {
@@ -21,7 +22,8 @@ struct ConvertOptions {
   std::uint32_t nodePoints = 65536;
   Sampling sampling = Sampling::ntree;
   LodColour lodColour = LodColour::first;
-  bool force = false;  ///< replace an existing store
+  bool force = false;    ///< replace an existing store
+  bool normals = false;  ///< estimate them where the scans have none
   SourceOptions source;
 };
 
@@ -40,6 +42,7 @@ inline constexpr const char* kMeasure = "measure";
 inline constexpr const char* kDistribute = "distribute";
 inline constexpr const char* kBuild = "build";
 inline constexpr const char* kMerge = "merge";
+inline constexpr const char* kNormals = "normals";  // where they are asked for
 inline constexpr const char* kWrite = "write";
 }  // namespace stage
 
@@ -47,12 +50,6 @@ inline constexpr const char* kWrite = "write";
 struct Progress {
   const char* stage = "";             ///< of namespace stage
   std::uint64_t done = 0, total = 0;  ///< points; both 0 where a stage cannot say
-};
-
-/// What one kind of plane takes in all nodes together (docs/format.md).
-struct PlaneSize {
-  std::string name;
-  std::uint64_t rawBytes = 0, storedBytes = 0;
 };
 
 /// What a conversion reports (design section 10).

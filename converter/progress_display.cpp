@@ -25,11 +25,12 @@ struct StageCost {
   std::string_view stage;
   double micros;
 };
-constexpr std::array<StageCost, 6> kTypicalMicros{{{stage::kSurvey, 0.0},
+constexpr std::array<StageCost, 7> kTypicalMicros{{{stage::kSurvey, 0.0},
                                                    {stage::kMeasure, 0.10},
                                                    {stage::kDistribute, 0.14},
                                                    {stage::kBuild, 0.30},
                                                    {stage::kMerge, 0.02},
+                                                   {stage::kNormals, 3.0},
                                                    {stage::kWrite, 0.01}}};
 
 std::size_t placeOf(std::string_view stage) {
@@ -73,7 +74,8 @@ std::optional<double> secondsLeft(const Progress& progress, double stageSeconds,
   if (left < -kPatienceSeconds) return std::nullopt;  // it takes longer than it should: who knows
   left = std::max(0.0, left);
   for (std::size_t next = place + 1; next < kTypicalMicros.size(); ++next)
-    if (kTypicalMicros[next].stage != stage::kMeasure) left += kTypicalMicros[next].micros * typical;
+    if (kTypicalMicros[next].stage != stage::kMeasure && kTypicalMicros[next].stage != stage::kNormals)
+      left += kTypicalMicros[next].micros * typical;
   return left;
 }
 

@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   app.add_flag("--skip-damaged", options.source.skipDamaged, "convert what is sound of a damaged scan");
   app.add_flag("--resume", resume, "take up an interrupted conversion: what it left is cleared and done again");
   app.add_flag("--force", options.force, "replace an existing store");
+  app.add_flag("--normals", options.normals, "estimate normals for scans that have none");
   app.add_flag("--plan", plan, "say what the conversion would take, and convert nothing; -o and --temp name the disks");
   app.add_flag("--json", json, "print one JSON object as the last line; progress as JSON lines on stderr");
   if (!parseCommandLine(app, argc, argv)) return 0;

@@ -45,6 +45,7 @@ inline constexpr std::string_view kPointSourceId = "point_source_id";      // u1
 inline constexpr std::string_view kGpsTime = "gps_time";                   // f64
 inline constexpr std::string_view kWavePacket = "wave_packet";             // u8 x 29, the record's waveform fields
 inline constexpr std::string_view kNormal = "normal";                      // f32 x 3
+inline constexpr std::string_view kNormalOctahedral = "normal_octahedral";  // u8 x 2, core/octahedral.h; estimated
 inline constexpr std::string_view kColourShift = "strata:colour_shift";    // u8; only in stores of sources that differ
 // in it: the point's own StoreInfo::colourShift. Ours, not the sources': exports leave it out
 }  // namespace attribute

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/octahedral.h"
 #include "io/attribute_codec.h"
 #include "io/bit_packing.h"
 #include "io/checksum.h"
@@ -285,6 +286,12 @@ void decodeShown(PayloadReader& payload, const StoreInfo& info, NodeData& out) {
     out.normal.resize(payload.pointCount());
     for (std::size_t i = 0; i < out.normal.size(); ++i)
       out.normal[i] = packNormal({xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]});
+  } else if (const int octahedral = info.layout.find(attribute::kNormalOctahedral); atHand(octahedral)) {
+    std::vector<Octahedral> codes(payload.pointCount());
+    decodeAttribute(payload, octahedral, info.layout.attributes()[static_cast<std::size_t>(octahedral)],
+                    sizeof(Octahedral), std::as_writable_bytes(std::span(codes)).data());
+    out.normal.resize(codes.size());
+    for (std::size_t i = 0; i < codes.size(); ++i) out.normal[i] = packNormal(decodeOctahedral(codes[i]));
   }
 }
 

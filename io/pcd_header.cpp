@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "core/error.h"
@@ -38,7 +39,9 @@ class PcdHeaderParser {
       } else if (key == "DATA") {
         if (values.empty()) lines_.fail("found DATA without ascii, binary or binary_compressed");
         return finish(values[0]);
-      } else if (key != "VERSION" && key != "VIEWPOINT") {
+      } else if (key == "VIEWPOINT") {
+        readViewpoint(values);
+      } else if (key != "VERSION") {
         lines_.fail("found '" + shownWord(key) + "' (expected a keyword of the PCD header)" +
                     (anything ? "" : ": this is no PCD file"));
       }
@@ -58,6 +61,19 @@ class PcdHeaderParser {
       values.push_back(value);
     }
     return values;
+  }
+
+  /// Three coordinates and a quaternion. What is wrong with them harms no point.
+  void readViewpoint(const std::vector<std::string_view>& words) {
+    glm::dvec3 at(0.0);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (axis >= words.size()) return;
+      const std::string_view word = words[axis];
+      double& value = at[static_cast<int>(axis)];
+      const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
+      if (failure != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return;
+    }
+    if (at != glm::dvec3(0.0)) header_.viewpoint = at;
   }
 
   ScalarType type(std::string_view letter, std::uint64_t size) const {

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +22,8 @@ struct PcdHeader {
   std::size_t recordBytes = 0;
   std::size_t headerBytes = 0;  ///< with the DATA line
   std::uint64_t headerLines = 0;
+  std::optional<glm::dvec3>
+      viewpoint;  ///< where the sensor stood; nothing for 0 0 0, what writers put that do not know
 };
 
 /// Reads the header at the start of `head`. Throws Error naming `file`.

@@ -49,13 +49,19 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
   return openTextTable(std::move(bytes), std::move(table), std::move(survey), header.points, "PCD ascii");
 }
 
+PcdHeader readHeader(const std::string& path, const ByteSource& bytes) {
+  std::string head(static_cast<std::size_t>(std::min(bytes.size(), kHeadBytes)), '\0');
+  bytes.read(0, std::as_writable_bytes(std::span(head)));
+  return parsePcdHeader(path, head);
+}
+
 }  // namespace
+
+std::optional<glm::dvec3> pcdViewpoint(const std::string& path) { return readHeader(path, *openFile(path)).viewpoint; }
 
 std::unique_ptr<PointSource> openPcd(const std::string& path, const SourceOptions& options) {
   std::unique_ptr<ByteSource> bytes = openFile(path);
-  std::string head(static_cast<std::size_t>(std::min(bytes->size(), kHeadBytes)), '\0');
-  bytes->read(0, std::as_writable_bytes(std::span(head)));
-  const PcdHeader header = parsePcdHeader(path, head);
+  const PcdHeader header = readHeader(path, *bytes);
   switch (header.encoding) {
     case PcdEncoding::ascii:
       return openAscii(std::move(bytes), header, options.skipDamaged);

@@ -11,4 +11,7 @@ namespace strata {
 /// VIEWPOINT says where the sensor stood; it is not applied to the points, which are in the world's frame already.
 std::unique_ptr<PointSource> openPcd(const std::string& path, const SourceOptions& options);
 
+/// Where the header says that the sensor stood, in the world; nothing where it does not say. Throws Error.
+std::optional<glm::dvec3> pcdViewpoint(const std::string& path);
+
 }  // namespace strata

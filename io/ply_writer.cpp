@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/error.h"
+#include "core/octahedral.h"
 #include "io/output_file.h"
 #include "io/scan_writer.h"
 
@@ -62,7 +63,7 @@ class PlyWriter final : public ScanWriter {
     file_.append(std::as_bytes(std::span(header)));
     recordBytes_ = 3 * sizeof(double) + (rgb_ >= 0 ? 3 : 0);
     for (std::size_t i = 0; i < info_.layout.attributes().size(); ++i)
-      if (isPlain(i)) recordBytes_ += info_.layout.attributes()[i].bytes();
+      if (isPlain(i)) recordBytes_ += writtenBytes(info_.layout.attributes()[i]);
   }
   ~PlyWriter() override {
     std::error_code ignored;
@@ -111,8 +112,8 @@ class PlyWriter final : public ScanWriter {
       if (!isPlain(i)) continue;
       const Attribute& a = info_.layout.attributes()[i];
       const std::string name = a.name.starts_with("extra:") ? a.name.substr(6) : a.name;
-      if (a.name == attribute::kNormal)
-        for (const char* axis : {"nx", "ny", "nz"}) property(plyType(a.type), axis);
+      if (a.name == attribute::kNormal || isOctahedral(a))
+        for (const char* axis : {"nx", "ny", "nz"}) property("float", axis);
       else if (a.components == 1)
         property(plyType(a.type), name);
       else
@@ -141,9 +142,12 @@ class PlyWriter final : public ScanWriter {
       if (!isPlain(i)) continue;
       const Attribute& a = info_.layout.attributes()[i];
       copyValues(a, record + info_.layout.offset(i), out);
-      out += a.bytes();
+      out += writtenBytes(a);
     }
   }
+
+  static bool isOctahedral(const Attribute& a) { return a.name == attribute::kNormalOctahedral && a.bytes() == 2; }
+  static std::size_t writtenBytes(const Attribute& a) { return isOctahedral(a) ? sizeof(glm::vec3) : a.bytes(); }
 
   /// Colours are written apart, and what Strata made for itself is not written.
   bool isPlain(std::size_t i) const {
@@ -156,6 +160,12 @@ class PlyWriter final : public ScanWriter {
   }
 
   static void copyValues(const Attribute& a, const std::byte* from, std::byte* to) {
+    if (isOctahedral(a)) {
+      const glm::vec3 normal =
+          decodeOctahedral({static_cast<std::uint8_t>(from[0]), static_cast<std::uint8_t>(from[1])});
+      std::memcpy(to, &normal, sizeof normal);
+      return;
+    }
     if (a.type != ScalarType::u64 && a.type != ScalarType::i64) {
       std::memcpy(to, from, a.bytes());
       return;

@@ -136,7 +136,7 @@ TEST(Summary, NamesEveryStageLevelAndPlaneInAboutTwentyLines) {
     report.stages.push_back({name, 1.5, 2.5});
   report.nodesByLevel = {1, 8};
   for (int i = 0; i < 15; ++i)
-    report.planes.push_back({"plane " + std::to_string(i), 100, static_cast<std::uint64_t>(100 - i)});
+    report.planes.push_back({"plane " + std::to_string(i), static_cast<std::uint64_t>(100 - i), 100});
   const std::string text = summaryText("a.strata", report, {7.5, 12.5, 1 << 20});
   for (const char* part : {"a.strata", "distribute", "0: 1, 1: 8", "plane 0", "others", "0.10 of"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in:\n" << text;

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "converter/add_normals.h"
+#include "core/octahedral.h"
+#include "io/store.h"
+
+namespace strata {
+
+/// Points of one node, by index in it.
+struct RegionPoint {
+  std::uint32_t node, point;
+};
+
+/// Cells of the octree that cover every point of the store once, none with more than `limit` points below it where
+/// that can be had.
+std::vector<NodeKey> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit);
+
+/// How far a neighbour may be, metres: so that typical points have far more than they need within it, and the same
+/// however the store is cut up. Reads every node.
+double neighbourReach(const Store& store, const ConvertOptions& options, const ConvertControl& control);
+
+/// The points in a region, wherever in the tree they are stored, and the normal of each.
+struct RegionNormals {
+  std::vector<RegionPoint> points;
+  std::vector<Octahedral> normals;
+};
+/// `mostAround` limits the points around the region that are looked at: where there are more, `reach` is halved until
+/// they fit.
+RegionNormals estimateRegion(const Store& store, NodeKey region, double reach, std::uint64_t mostAround,
+                             const Viewpoint& viewpoint);
+
+}  // namespace strata
