@@ -152,6 +152,7 @@ class PointsRasterizer final : public Rasterizer {
     drawRuns();
     ids_.resize(buffer_.pixels.size());
     depths_.resize(buffer_.pixels.size());
+    scene_.gl().Finish();  // llvmpipe draws when it has to, and counts no time until then
     end_.record();
     target_.read(ids_.data(), depths_.data());
     if (counts) countPoints();
