@@ -117,6 +117,20 @@ class ComputeRasterizer final : public Rasterizer {
     stats.uploadMs = watch.lapMs();
     buffers_.resize(views.size());
     for (std::size_t v = 0; v < views.size(); ++v) prepareBuffer(views[v], sums, counts, buffers_[v]);
+    try {
+      drawOnGpu(options, sums, counts, stats);
+    } catch (const Error& error) {  // a variant of a shader that this driver cannot compile
+      if (!warned_) logWarning(std::string(name()) + ": " + error.what());
+      warned_ = true;
+    }
+    scene_.gl().UseProgram(0);
+    stats.drawMs = watch.lapMs();
+    for (std::size_t v = 0; v < views.size(); ++v) resolveFrame(list, views[v], options, buffers_[v], pool_, frames[v]);
+    stats.resolveMs = watch.lapMs();
+    return stats;
+  }
+
+  void drawOnGpu(const DrawOptions& options, bool sums, bool counts, DrawStats& stats) {
     begin_.record();
     scene_.dispatchPlan();
     for (const Band& band : target_.begin(buffers_, sums, counts)) {
@@ -125,18 +139,13 @@ class ComputeRasterizer final : public Rasterizer {
       target_.read(buffers_);
     }
     addCounters(stats);
-    scene_.gl().UseProgram(0);
-    stats.drawMs = watch.lapMs();
-    for (std::size_t v = 0; v < views.size(); ++v) resolveFrame(list, views[v], options, buffers_[v], pool_, frames[v]);
-    stats.resolveMs = watch.lapMs();
-    return stats;
   }
 
   static void prepareBuffer(const View& view, bool sums, bool counts, VisibilityBuffer& buffer) {
     buffer.width = std::max(view.width, 0);
     buffer.height = std::max(view.height, 0);
     const std::size_t pixels = static_cast<std::size_t>(buffer.width) * static_cast<std::size_t>(buffer.height);
-    buffer.pixels.resize(pixels);
+    buffer.pixels.assign(pixels, kEmptyPixel);
     buffer.sums.resize(sums ? pixels : 0);
     buffer.counts.resize(counts ? pixels : 0);
   }
@@ -213,6 +222,7 @@ class ComputeRasterizer final : public Rasterizer {
   ComputeTarget target_;
   GlTimestamp begin_, end_;
   std::vector<VisibilityBuffer> buffers_;
+  bool warned_ = false;
 };
 
 }  // namespace

@@ -25,7 +25,6 @@ struct DrawStats {
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
   double gpuMs = 0.0;  ///< of drawMs, by OpenGL's own clock: clearing, culling, drawing; no reading back. 0 for cpu
 };
-void addStats(const DrawStats& one, DrawStats& sum);
 
 /// Adds what one draw did to the sum of several.
 void addStats(const DrawStats& one, DrawStats& sum);
@@ -64,8 +63,7 @@ struct RasterizerOptions {
 
 /// Takes over `context`; null will do for cpu, which lets go of one it is given. `automatic` is cpu where there is no
 /// context or OpenGL runs on the CPU or lacks what compute32 needs, else compute64, or compute32 where the driver lacks
-/// 64-bit atomics. Throws Error where the backend
-/// cannot work with the context.
+/// 64-bit atomics. Throws Error where the backend cannot work with the context.
 std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
                                              std::unique_ptr<GlContext> context);
 

@@ -8,6 +8,7 @@
 #include "render/batch_plan.h"
 #include "render/cpu_kernel.h"
 #include "render/rasterizer.h"
+#include "tests/support/gl_contexts.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata {
@@ -87,17 +88,18 @@ void cpuWith(benchmark::State& state, int pointSize, int fill, bool edl, Shading
 }
 
 /// Two eyes in one pass over the points, or one after the other.
-void cpuEyes(benchmark::State& state, bool together) {
-  const auto rasterizer = cpuRasterizer(state);
+void eyes(benchmark::State& state, Rasterizer& rasterizer, bool together) {
   const View views[] = {farView(), otherEye(farView())};
   Frame frames[2];
   measure(state, [&] {
-    if (together) return rasterizer->drawViews(town(), views, {}, frames);
-    DrawStats sum = rasterizer->draw(town(), views[0], {}, frames[0]);
-    addStats(rasterizer->draw(town(), views[1], {}, frames[1]), sum);
+    if (together) return rasterizer.drawViews(town(), views, {}, frames);
+    DrawStats sum = rasterizer.draw(town(), views[0], {}, frames[0]);
+    addStats(rasterizer.draw(town(), views[1], {}, frames[1]), sum);
     return sum;
   });
 }
+
+void cpuEyes(benchmark::State& state, bool together) { eyes(state, *cpuRasterizer(state), together); }
 
 /// One block of points again and again: nothing but the kernel, everything in the first-level cache. Arguments: planes;
 /// whether the pixels are nearer than all points already; whether the batch is wholly in the image.
@@ -133,19 +135,35 @@ void kernel(benchmark::State& state) {
       benchmark::Counter(static_cast<double>(points.count) * 1e-6, benchmark::Counter::kIsIterationInvariantRate);
 }
 
-void onGl(benchmark::State& state, Backend backend) {
+std::unique_ptr<Rasterizer> glRasterizer(Backend backend) {
+  static const bool kOffered = (test::offerWideAtomicsInSoftware(), true);
+  (void)kOffered;
   RasterizerOptions options;
   options.uploadBytesPerFrame = options.gpuBytes;
+  return createRasterizer(backend, options, createHeadlessContext());
+}
+
+void onGl(benchmark::State& state, Backend backend) {
   try {
-    draw(state, *createRasterizer(backend, options, createHeadlessContext()), farView());
+    draw(state, *glRasterizer(backend), farView());
   } catch (const Error& error) {
     state.SkipWithError(error.what());
   }
 }
 
-#define STRATA_ON_ONE_AND_TWO(name, ...) \
-  BENCHMARK_CAPTURE(name, __VA_ARGS__)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()
-STRATA_ON_ONE_AND_TWO(cpu, far, farView());
+void glEyes(benchmark::State& state, Backend backend, bool together) {
+  try {
+    eyes(state, *glRasterizer(backend), together);
+  } catch (const Error& error) {
+    state.SkipWithError(error.what());
+  }
+}
+
+BENCHMARK_CAPTURE(name, __VA_ARGS__)
+    ->Arg(1)
+    ->Arg(2)
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime() STRATA_ON_ONE_AND_TWO(cpu, far, farView());
 STRATA_ON_ONE_AND_TWO(cpu, close, closeView());
 STRATA_ON_ONE_AND_TWO(cpuWith, size2_edl, 2, 1, true, Shading::plain);
 STRATA_ON_ONE_AND_TWO(cpuWith, fill7, 1, 7, false, Shading::plain);
@@ -154,6 +172,12 @@ STRATA_ON_ONE_AND_TWO(cpuEyes, one_after_the_other, false);
 STRATA_ON_ONE_AND_TWO(cpuEyes, together, true);
 BENCHMARK(kernel)->ArgNames({"planes", "hidden", "inside"})->ArgsProduct({{1, 2, 3}, {0, 1}, {0, 1}});
 BENCHMARK_CAPTURE(onGl, compute32, Backend::compute32)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(onGl, compute64, Backend::compute64)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(onGl, compute_lock, Backend::computeLock)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(glEyes, compute32_together, Backend::compute32, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(glEyes, compute32_apart, Backend::compute32, false)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(glEyes, compute64_together, Backend::compute64, true)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(glEyes, compute64_apart, Backend::compute64, false)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(onGl, points, Backend::points)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace

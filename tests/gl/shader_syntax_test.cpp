@@ -1,0 +1,82 @@
+// The shaders against Khronos' reference compiler, where it is installed: what Mesa takes, another driver may refuse.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "render/gl_objects.h"
+#include "render/shader_variant.h"
+#include "tests/support/test_data.h"
+
+namespace strata {
+namespace {
+
+const std::string kBits32 = define("STRATA_GROUP_SIZE", "128") + define("STRATA_PREFETCH", "1") +
+                            define("STRATA_LOCK_TURNS", "256u") + define("STRATA_PLAN_SIZE", "32") +
+                            define("STRATA_PX_AT_10_BITS", "500.0LF") + define("STRATA_PX_AT_20_BITS", "512000.0LF") +
+                            define("STRATA_DEPTH_STRIDE", "2");
+
+/// What the compiler says of one stage; empty where nothing is wrong.
+std::string errorsOf(const std::string& kind, int version, const std::string& preamble,
+                     const std::vector<std::string_view>& files) {
+  const test::TempFolder folder;
+  const std::string source = (folder / ("shader." + kind)).string(), log = (folder / "log").string();
+  std::ofstream out(source);
+  out << "#version " << version << " core\n" << preamble;
+  for (const std::string_view file : files) out << shaderText(file);
+  out.close();
+  const int status = std::system(("glslangValidator -S " + kind + " " + source + " > " + log).c_str());
+  std::ifstream in(log);
+  return status == 0 ? "" : std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+class ShaderSyntax : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (std::system("glslangValidator --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no glslangValidator here";
+  }
+  /// `check(defines)` for one and two views, with and without clip region and classes.
+  template <typename Check>
+  static void forEachVariant(Check check) {
+    for (const int views : {1, 2})
+      for (const bool clip : {false, true})
+        for (const bool classes : {false, true}) check(kBits32 + ShaderVariant{views, clip, classes}.defines());
+  }
+};
+
+TEST_F(ShaderSyntax, OfTheComputeShadersIsSound) {
+  forEachVariant([](const std::string& defines) {
+    EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "plan.comp"}), "");
+    for (const char* count : {"0", "1"})
+      for (const std::string_view file : {"compute32.comp", "compute_lock.comp", "accumulate.comp"})
+        EXPECT_EQ(errorsOf("comp", 430, defines + define("STRATA_COUNT", count),
+                           {"shader_types.h", "batch.glsl", "draw_batch.glsl", file}),
+                  "");
+  });
+}
+
+TEST_F(ShaderSyntax, OfCompute64IsSoundByEitherNameOfItsAtomics) {
+  for (const char* atomics : {"GL_NV_shader_atomic_int64", "GL_EXT_shader_atomic_int64"})
+    forEachVariant([&](const std::string& defines) {
+      const std::string extensions =
+          "#extension GL_ARB_gpu_shader_int64 : require\n#extension " + std::string(atomics) + " : require\n";
+      EXPECT_EQ(errorsOf("comp", 450, extensions + defines,
+                         {"shader_types.h", "batch.glsl", "draw_batch.glsl", "compute64.comp"}),
+                "");
+    });
+}
+
+TEST_F(ShaderSyntax, OfPointsIsSound) {
+  forEachVariant([](const std::string& defines) {
+    EXPECT_EQ(errorsOf("vert", 430, defines, {"shader_types.h", "batch.glsl", "points.vert"}), "");
+  });
+  for (const char* count : {"0", "1"})
+    EXPECT_EQ(errorsOf("frag", 430, define("STRATA_COUNT", count), {"shader_types.h", "points.frag"}), "");
+}
+
+TEST_F(ShaderSyntax, OfAWrongShaderIsNot) {
+  EXPECT_NE(errorsOf("comp", 430, kBits32, {"shader_types.h", "compute64.comp"}), "");
+}
+
+}  // namespace
+}  // namespace strata
