@@ -28,7 +28,8 @@ std::uint64_t evenBits(std::uint64_t v) {
   return (v | v >> 16) & 0xffffffffu;
 }
 
-/// Place of point i of a square in Morton order, 0 to 1, jittered within its cell.
+/// Place of point i of a square in Morton order, 0 to 1, jittered within its
+/// cell.
 glm::dvec2 inSquare(std::uint64_t i, std::uint64_t count) {
   const double t = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
   const auto code = static_cast<std::uint64_t>(t * 0x1p52);
@@ -49,13 +50,40 @@ View lookAt(const glm::dvec3& eye, const glm::dvec3& target) {
   return view;
 }
 
-std::uint64_t mortonKey(const glm::dvec3& p) {  // p in 0 to 1
+constexpr int kCurveBits = 21;
+
+glm::u64vec3 curveCell(const glm::dvec3& p) {  // p in 0 to 1
+  return glm::u64vec3(glm::clamp(p, 0.0, 1.0) * ((1 << kCurveBits) - 1.0));
+}
+
+/// Bit b of x, y and z are bits 3b + 2, 3b + 1 and 3b.
+std::uint64_t interleave(const glm::u64vec3& cell) {
   std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::uint64_t>(std::clamp(p[axis], 0.0, 1.0) * 2097151.0);
-    for (int bit = 0; bit < 21; ++bit) key |= (cell >> bit & 1u) << (3 * bit + axis);
-  }
+  for (int bit = 0; bit < kCurveBits; ++bit)
+    for (int axis = 0; axis < 3; ++axis) key |= (cell[axis] >> bit & 1u) << (3 * bit + 2 - axis);
   return key;
+}
+
+/// Skilling 2004, "Programming the Hilbert curve": undo the excess work from
+/// the top bit down, then Gray code.
+std::uint64_t hilbertKey(glm::u64vec3 x) {
+  for (std::uint64_t q = std::uint64_t{1} << (kCurveBits - 1); q > 1; q >>= 1)
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::uint64_t lower = q - 1;
+      if ((x[axis] & q) != 0) {
+        x[0] ^= lower;
+      } else {
+        const std::uint64_t swapped = (x[0] ^ x[axis]) & lower;
+        x[0] ^= swapped;
+        x[axis] ^= swapped;
+      }
+    }
+  x[1] ^= x[0];
+  x[2] ^= x[1];
+  std::uint64_t flip = 0;
+  for (std::uint64_t q = std::uint64_t{1} << (kCurveBits - 1); q > 1; q >>= 1)
+    if ((x[2] & q) != 0) flip ^= q - 1;
+  return interleave(x ^ glm::u64vec3(flip));
 }
 
 /// Nodes of points [0, count) given by `at`, made by all cores.
@@ -120,7 +148,8 @@ Cloud scannerCloud(const std::string& name, std::uint64_t count) {
     const double yaw = glm::two_pi<double>() * static_cast<double>(i / rows) / static_cast<double>(columns);
     const double pitch = glm::pi<double>() * ((static_cast<double>(i % rows) + 0.5) / static_cast<double>(rows) - 0.5);
     const glm::dvec3 ray(std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch));
-    const glm::dvec3 far(ray.x > 0.0 ? 22.0 : 9.0, ray.y > 0.0 ? 14.0 : 6.0, ray.z > 0.0 ? 5.0 : 1.7);  // a hall
+    const glm::dvec3 far(ray.x > 0.0 ? 22.0 : 9.0, ray.y > 0.0 ? 14.0 : 6.0,
+                         ray.z > 0.0 ? 5.0 : 1.7);  // a hall
     const glm::dvec3 hit = far / glm::max(glm::abs(ray), 1e-9);
     return ray * (std::min({hit.x, hit.y, hit.z}) * (1.0 + 0.003 * randomOf(i)));
   };
@@ -133,13 +162,17 @@ RenderList unstructured(const Cloud& cloud, std::uint32_t nodePoints) {
   return makeNodes(cloud.count, nodePoints, cloud.point);
 }
 
-RenderList sorted(const Cloud& cloud, std::uint32_t nodePoints) {
+RenderList sorted(const Cloud& cloud, Curve curve, std::uint32_t nodePoints) {
   Box box;
   for (std::uint64_t i = 0; i < cloud.count; i += 1 + cloud.count / 100000) box.add(cloud.point(i));
+  const glm::dvec3 size = box.max - box.min;
+  const double side = std::max({size.x, size.y, size.z});
   std::vector<std::pair<std::uint64_t, std::uint64_t>> order(cloud.count);
   ThreadPool(0).parallelFor(cloud.count, 100000, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      order[i] = {mortonKey((cloud.point(i) - box.min) / glm::max(box.max - box.min, 1e-9)), i};
+    for (std::size_t i = begin; i < end; ++i) {
+      const glm::u64vec3 cell = curveCell((cloud.point(i) - box.min) / side);
+      order[i] = {curve == Curve::morton ? interleave(cell) : hilbertKey(cell), i};
+    }
   });
   std::sort(order.begin(), order.end());
   return makeNodes(cloud.count, nodePoints, [&](std::uint64_t i) { return cloud.point(order[i].second); });

@@ -8,7 +8,8 @@
 
 namespace strata::bench {
 
-/// A made scan: `point(i)` is point i of `count`, in the order that its file would have. Any thread may ask.
+/// A made scan: `point(i)` is point i of `count`, in the order that its file
+/// would have. Any thread may ask.
 struct Cloud {
   std::string name;
   std::uint64_t count = 0;
@@ -16,19 +17,26 @@ struct Cloud {
   View outside, inside;
 };
 
-/// Waves of ground in 2D Morton order, as an airborne or photogrammetric scan after sorting; few points hide others.
+/// Waves of ground in 2D Morton order, as an airborne or photogrammetric scan
+/// after sorting; few points hide others.
 Cloud groundCloud(const std::string& name, std::uint64_t count, double side);
-/// Ground with a building of rooms on it, each wall in Morton order: many points hide others.
+/// Ground with a building of rooms on it, each wall in Morton order: many
+/// points hide others.
 Cloud buildingCloud(const std::string& name, std::uint64_t count);
-/// What a terrestrial scanner in a room records: one column of the sphere after the other (Schütz 2022, 4.2).
+/// What a terrestrial scanner in a room records: one column of the sphere after
+/// the other (Schütz 2022, 4.2).
 Cloud scannerCloud(const std::string& name, std::uint64_t count);
 
-/// Consecutive points in nodes of at most `nodePoints` and batches of 10 240, on a grid of 1 mm.
+/// Consecutive points in nodes of at most `nodePoints` and batches of 10 240,
+/// on a grid of 1 mm.
 RenderList unstructured(const Cloud& cloud, std::uint32_t nodePoints);
-/// The same points sorted by Morton code.
-RenderList sorted(const Cloud& cloud, std::uint32_t nodePoints);
-/// Layered: a quarter of the points, evenly spread, is kept for the next coarser level, and so on; each level in nodes
-/// of at most `nodePoints` consecutive points. Every point once, as in Potree (Schütz 2022, 3.5).
+enum class Curve { morton, hilbert };
+/// The same points sorted along a curve through 2^21 cells an axis of the
+/// cloud's bounding cube.
+RenderList sorted(const Cloud& cloud, Curve curve, std::uint32_t nodePoints);
+/// Layered: a quarter of the points, evenly spread, is kept for the next
+/// coarser level, and so on; each level in nodes of at most `nodePoints`
+/// consecutive points. Every point once, as in Potree (Schütz 2022, 3.5).
 RenderList layered(const Cloud& cloud, std::uint32_t nodePoints);
 
 }  // namespace strata::bench

@@ -1,11 +1,14 @@
-// Schütz 2022, Tables 1 to 3, 4.2 and 4.4.2, and Günther 2013, Figure 3 and Table 1, with made clouds of their sizes.
-// Times are OpenGL's own (timestamp queries): clearing, culling and drawing, without reading the picture back.
-// Run by gpu.sh. --small: clouds of a few 100 000 points, so that it is quick without a GPU.
+// Schütz 2022, Tables 1 to 3, 4.2 and 4.4.2, and Günther 2013, Figure 3 and
+// Table 1, with made clouds of their sizes. Times are OpenGL's own (timestamp
+// queries): clearing, culling and drawing, without reading the picture back.
+// Run by gpu.sh. --small: clouds of a few 100 000 points, so that it is quick
+// without a GPU; --medium: a twentieth of the papers' numbers. --order: the
+// table of the points' order alone.
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <numeric>
 #include <random>
+#include <string>
 
 #include "core/error.h"
 #include "render/compute_rasterizer.h"
@@ -126,11 +129,15 @@ void tables1And2(const Scale& scale, double bandwidth) {
                       {temple, " (out)", temple.outside},
                       {temple, " (in)", temple.inside},
                       {manor, "", manor.outside}};
-  std::printf("\n## Table 1: milliseconds of the GPU, and Table 2: what was drawn (%d x %d)\n\n", scale.width,
-              scale.height);
   std::printf(
-      "| cloud | points | GL_POINTS | basic | prefetch | HQS | LOD basic | LOD HQS | G points/s (prefetch) | "
-      "share of copy bandwidth | batches | drawn | points drawn | nodes LOD | batches drawn LOD | points drawn LOD "
+      "\n## Table 1: milliseconds of the GPU, and Table 2: what was "
+      "drawn (%d x %d)\n\n",
+      scale.width, scale.height);
+  std::printf(
+      "| cloud | points | GL_POINTS | basic | prefetch | HQS | LOD "
+      "basic | LOD HQS | G points/s (prefetch) | "
+      "share of copy bandwidth | batches | drawn | points drawn | "
+      "nodes LOD | batches drawn LOD | points drawn LOD "
       "|\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
@@ -156,7 +163,8 @@ void tables1And2(const Scale& scale, double bandwidth) {
     }
     const double rate = static_cast<double>(whole.pointsDrawn) / (ms[1] * 1e-3);
     std::printf(
-        "| %s%s | %.1f M | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | %.3f | %.0f %% | %llu | %u | %.2f M | %llu | "
+        "| %s%s | %.1f M | %.2f | %.2f | %.2f | %.2f | %.2f | %.2f | "
+        "%.3f | %.0f %% | %llu | %u | %.2f M | %llu | "
         "%u | %.2f M |\n",
         row.cloud.name.c_str(), row.where, static_cast<double>(row.cloud.count) * 1e-6, gl, ms[0], ms[1], ms[2], ms[3],
         ms[4], rate * 1e-9, 100.0 * 4.0 * rate / bandwidth, static_cast<unsigned long long>(batches),
@@ -166,33 +174,60 @@ void tables1And2(const Scale& scale, double bandwidth) {
   }
 }
 
-/// Schütz 2022, 4.2 and Table 3: a scanner's order against Morton order.
-void orderAndPrecision(const Scale& scale) {
-  const Cloud cloud = scannerCloud("scanner", scale.points(100));
-  std::printf("\n## 4.2 and Table 3: scan order against Morton order (%.1f M points)\n\n",
-              static_cast<double>(cloud.count) * 1e-6);
-  std::printf("| order | view | ms | batches drawn | 10 bit | 20 bit | 30 bit |\n|---|---|---|---|---|---|---|\n");
-  for (const bool morton : {false, true}) {
-    const RenderList list = morton ? sorted(cloud, scale.nodePoints) : unstructured(cloud, scale.nodePoints);
-    for (const bool inside : {false, true}) {
-      DrawStats stats;
-      const double ms =
-          gpuMs(list, scale.sized(inside ? cloud.inside : cloud.outside), {}, false, false, scale, &stats);
-      std::printf("| %s | %s | %.2f | %u | %u | %u | %u |\n", morton ? "Morton" : "scan", inside ? "inside" : "outside",
-                  ms, stats.batchesDrawn, stats.batchesAt[0], stats.batchesAt[1], stats.batchesAt[2]);
-      std::fflush(stdout);
+/// Longest side of the tight boxes of the batches, as they would be without
+/// rounding up to powers of two; metres.
+double meanBatchSide(const RenderList& list) {
+  double sum = 0.0;
+  for (const RenderItem& item : list.items)
+    for (const Batch& batch : item.node->batches) {
+      Box box;
+      for (std::uint32_t i = batch.firstPoint; i < batch.firstPoint + batch.pointCount; ++i)
+        box.add(pointPosition(*item.node, batch, i, Precision::full30));
+      const glm::dvec3 size = box.max - box.min;
+      sum += std::max({size.x, size.y, size.z});
     }
-  }
+  return sum / static_cast<double>(batchesOf(list));
 }
 
-/// Schütz 2022, 4.4.2: everything outside the image, nothing culled, with 10, 20 and 30 bits.
+/// Schütz 2022, 4.2 and Table 3: the file's order against Morton order, and
+/// Hilbert's beside them.
+void orderAndPrecision(const Scale& scale) {
+  const Cloud clouds[] = {scannerCloud("scanner", scale.points(100)), buildingCloud("temple", scale.points(100)),
+                          groundCloud("quarry", scale.points(69), 900.0)};
+  std::printf("\n## 4.2 and Table 3: the order of points\n\n");
+  std::printf(
+      "| cloud | order | mean batch | view | ms | batches drawn | 10 "
+      "bit | 20 bit | 30 bit |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
+  for (const Cloud& cloud : clouds)
+    for (const char* order : {"file", "Morton", "Hilbert"}) {
+      const RenderList list = order[0] == 'f'
+                                  ? unstructured(cloud, scale.nodePoints)
+                                  : sorted(cloud, order[0] == 'M' ? Curve::morton : Curve::hilbert, scale.nodePoints);
+      const double side = meanBatchSide(list);
+      for (const bool inside : {false, true}) {
+        DrawStats stats;
+        const double ms =
+            gpuMs(list, scale.sized(inside ? cloud.inside : cloud.outside), {}, false, false, scale, &stats);
+        std::printf("| %s | %s | %.2f m | %s | %.2f | %u | %u | %u | %u |\n", cloud.name.c_str(), order, side,
+                    inside ? "inside" : "outside", ms, stats.batchesDrawn, stats.batchesAt[0], stats.batchesAt[1],
+                    stats.batchesAt[2]);
+        std::fflush(stdout);
+      }
+    }
+}
+
+/// Schütz 2022, 4.4.2: everything outside the image, nothing culled, with 10,
+/// 20 and 30 bits.
 void forcedPrecision(const Scale& scale) {
   const Cloud cloud = buildingCloud("temple", scale.points(529));
   const RenderList list = unstructured(cloud, scale.nodePoints);
   View away = scale.sized(cloud.outside);
   away.target = away.eye + (away.eye - away.target);
-  std::printf("\n## 4.4.2: %.1f M points, all outside the image, none culled\n\n| bits | ms |\n|---|---|\n",
-              static_cast<double>(cloud.count) * 1e-6);
+  std::printf(
+      "\n## 4.4.2: %.1f M points, all outside the image, none "
+      "culled\n\n| bits | ms |\n|---|---|\n",
+      static_cast<double>(cloud.count) * 1e-6);
   for (const int planes : {1, 2, 3}) {
     ComputeExperiment experiment;
     experiment.forcedPlanes = planes;
@@ -201,7 +236,8 @@ void forcedPrecision(const Scale& scale) {
   }
 }
 
-/// `count` planes of side x side points, one behind the other, shuffled (Günther 2013, 5.1).
+/// `count` planes of side x side points, one behind the other, shuffled
+/// (Günther 2013, 5.1).
 RenderList planeStack(int side, int count, std::uint32_t nodePoints) {
   std::vector<glm::ivec3> cells;
   for (int z = 0; z < count; ++z)
@@ -233,9 +269,13 @@ View stackView(int side, int pixels) {
 void guentherFigure3(const Scale& scale) {
   const int side = scale.divisor > 1 ? 128 : 1024;
   const int most = scale.divisor > 1 ? 8 : 170;
-  std::printf("\n## Günther 2013, Figure 3: planes of %d x %d points, shuffled; milliseconds\n\n", side, side);
   std::printf(
-      "| planes | covered pixels | GL_POINTS | compute_lock | compute32 | compute64 | retries | repairs |\n"
+      "\n## Günther 2013, Figure 3: planes of %d x %d points, "
+      "shuffled; milliseconds\n\n",
+      side, side);
+  std::printf(
+      "| planes | covered pixels | GL_POINTS | compute_lock | "
+      "compute32 | compute64 | retries | repairs |\n"
       "|---|---|---|---|---|---|---|---|\n");
   const auto row = [&](const RenderList& list, int planes, int pixels) {
     const View view = stackView(side, pixels);
@@ -258,7 +298,8 @@ void guentherFigure3(const Scale& scale) {
   for (int pixels = side; pixels >= 1; pixels /= 4) row(list, most, pixels);
 }
 
-/// Günther 2013, Table 1: many depth tests with some culling (1, 2), much culling (3), an overview (4).
+/// Günther 2013, Table 1: many depth tests with some culling (1, 2), much
+/// culling (3), an overview (4).
 void guentherTable1(const Scale& scale) {
   const Cloud cloud = buildingCloud("building", scale.points(138));
   const RenderList list = unstructured(cloud, scale.nodePoints);
@@ -268,9 +309,13 @@ void guentherTable1(const Scale& scale) {
   overview.eye *= 4.0;
   inner.target = {13.0, 40.0, 1.7};
   const std::pair<int, View> views[] = {{1, cloud.inside}, {2, inner}, {3, corner}, {4, overview}};
-  std::printf("\n## Günther 2013, Table 1: frames a second, %.1f M points (depth in clip space)\n\n",
-              static_cast<double>(cloud.count) * 1e-6);
-  std::printf("| view | points after culling | GL_POINTS | compute_lock | ratio |\n|---|---|---|---|---|\n");
+  std::printf(
+      "\n## Günther 2013, Table 1: frames a second, %.1f M points "
+      "(depth in clip space)\n\n",
+      static_cast<double>(cloud.count) * 1e-6);
+  std::printf(
+      "| view | points after culling | GL_POINTS | compute_lock | "
+      "ratio |\n|---|---|---|---|---|\n");
   for (const auto& [number, view] : views) {
     const auto lock = createComputeRasterizer(ComputeWay::computeLock, createHeadlessContext(), roomFor(list));
     const Measure result = measure(*lock, list, scale.sized(view), {}, scale.frames);
@@ -299,13 +344,20 @@ void twoEyes(const Scale& scale) {
                     rasterizer->draw(list, right, {}, frames[1]).gpuMs);
   }
   for (auto* times : {&together, &apart}) std::sort(times->begin(), times->end());
-  std::printf("\n## 4.3: two eyes\n\n| one pass | two passes |\n|---|---|\n| %.2f ms | %.2f ms |\n",
-              together[together.size() / 2], apart[apart.size() / 2]);
+  std::printf(
+      "\n## 4.3: two eyes\n\n| one pass | two passes |\n|---|---|\n| "
+      "%.2f ms | %.2f ms |\n",
+      together[together.size() / 2], apart[apart.size() / 2]);
 }
 
-int run(bool small) {
+int run(const std::string& size, const std::string& only) {
   Scale scale;
-  if (small) scale = {1000, 320, 143, 3, 5 * Batch::kMaxPoints};
+  if (size == "--small") scale = {1000, 320, 143, 3, 5 * Batch::kMaxPoints};
+  if (size == "--medium") scale = {20, 1280, 570, 5, 10 * Batch::kMaxPoints};
+  if (only == "--order") {
+    orderAndPrecision(scale);
+    return 0;
+  }
   const auto context = createHeadlessContext();
   std::printf("# Rasterizers on %s\n\n", glRenderer(loadGlFunctions(*context)).c_str());
   const double bandwidth = copyBandwidth(scale);
@@ -325,14 +377,14 @@ int run(bool small) {
 }  // namespace strata::bench
 
 int main(int argc, char** argv) {
-  const bool small = argc == 2 && std::strcmp(argv[1], "--small") == 0;
-  if (argc > 1 && !small) {
-    std::fprintf(stderr, "usage: gpu_bench [--small]\n");
+  const std::string size = argc > 1 ? argv[1] : "", only = argc > 2 ? argv[2] : "";
+  if (argc > 3 || (argc > 1 && size != "--small" && size != "--medium") || (argc > 2 && only != "--order")) {
+    std::fprintf(stderr, "usage: gpu_bench [--small|--medium [--order]]\n");
     return 2;
   }
   try {
     strata::test::offerWideAtomicsInSoftware();
-    return strata::bench::run(small);
+    return strata::bench::run(size, only);
   } catch (const strata::Error& error) {
     std::fprintf(stderr, "error: %s\n", error.what());
     return 1;
