@@ -159,11 +159,9 @@ void glEyes(benchmark::State& state, Backend backend, bool together) {
   }
 }
 
-BENCHMARK_CAPTURE(name, __VA_ARGS__)
-    ->Arg(1)
-    ->Arg(2)
-    ->Unit(benchmark::kMillisecond)
-    ->UseRealTime() STRATA_ON_ONE_AND_TWO(cpu, far, farView());
+#define STRATA_ON_ONE_AND_TWO(name, ...) \
+  BENCHMARK_CAPTURE(name, __VA_ARGS__)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime()
+STRATA_ON_ONE_AND_TWO(cpu, far, farView());
 STRATA_ON_ONE_AND_TWO(cpu, close, closeView());
 STRATA_ON_ONE_AND_TWO(cpuWith, size2_edl, 2, 1, true, Shading::plain);
 STRATA_ON_ONE_AND_TWO(cpuWith, fill7, 1, 7, false, Shading::plain);
