@@ -12,8 +12,8 @@ void minMax(const std::byte* first, std::size_t stride, std::size_t count, std::
             AttributeRange& range) {
   T low = std::numeric_limits<T>::max();
   T high = std::numeric_limits<T>::lowest();
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t c = 0; c < components; ++c) {
+  for (std::size_t c = 0; c < components; ++c)
+    for (std::size_t i = 0; i < count; ++i) {
       T value;
       std::memcpy(&value, first + i * stride + c * sizeof(T), sizeof(T));
       low = value < low ? value : low;  // a NaN compares false and is passed over
@@ -53,25 +53,41 @@ void minMaxOf(ScalarType type, const std::byte* first, std::size_t stride, std::
 }  // namespace
 
 AttributeStats::AttributeStats(const PointLayout& layout) : layout_(layout) {
-  AttributeRange none;
-  none.min = std::numeric_limits<double>::infinity();
-  none.max = -none.min;
-  ranges_.assign(layout.attributes().size(), none);
-  if (layout.find(attribute::kIntensity) >= 0) intensities_.assign(65536, 0);
+  ranges_.resize(layout.attributes().size());
+  if (layout.find(attribute::kIntensity) >= 0) intensities_.resize(65536);
+  clear();
 }
 
-void AttributeStats::gather(const std::byte* records, std::size_t stride, std::size_t count) {
+void AttributeStats::clear() {
+  for (AttributeRange& range : ranges_) {
+    range.min = std::numeric_limits<double>::infinity();
+    range.max = -range.min;
+  }
+  std::fill(intensities_.begin(), intensities_.end(), std::uint64_t{0});
+  points_ = 0;
+}
+
+void AttributeStats::gather(const std::byte* records, std::size_t stride, std::size_t count,
+                            const AttributeVariation& variation) {
+  if (count == 0) return;
   points_ += count;
+  const auto varies = [&](std::size_t attribute) {
+    const auto first = variation.differs.begin() + static_cast<std::ptrdiff_t>(layout_.offset(attribute));
+    return std::any_of(first, first + static_cast<std::ptrdiff_t>(layout_.attributes()[attribute].bytes()),
+                       [](std::uint8_t differs) { return differs != 0; });
+  };
   for (std::size_t a = 0; a < ranges_.size(); ++a) {
     const Attribute& column = layout_.attributes()[a];
-    minMaxOf(column.type, records + layout_.offset(a), stride, count, column.components, ranges_[a]);
+    minMaxOf(column.type, records + layout_.offset(a), stride, varies(a) ? count : 1, column.components, ranges_[a]);
   }
   if (intensities_.empty()) return;
-  const std::byte* first = records + layout_.offset(static_cast<std::size_t>(layout_.find(attribute::kIntensity)));
-  for (std::size_t i = 0; i < count; ++i) {
+  const auto intensity = static_cast<std::size_t>(layout_.find(attribute::kIntensity));
+  const std::byte* first = records + layout_.offset(intensity);
+  const bool constant = !varies(intensity);
+  for (std::size_t i = 0; i < (constant ? 1 : count); ++i) {
     std::uint16_t value;
     std::memcpy(&value, first + i * stride, sizeof value);
-    ++intensities_[value];
+    intensities_[value] += constant ? count : 1;
   }
 }
 
@@ -82,6 +98,43 @@ void AttributeStats::add(const AttributeStats& other) {
     ranges_[a].max = std::max(ranges_[a].max, other.ranges_[a].max);
   }
   for (std::size_t v = 0; v < intensities_.size(); ++v) intensities_[v] += other.intensities_[v];
+}
+
+/// The histogram is written as pairs of (values without points before it, points), ended by a count of 0.
+void AttributeStats::write(RecordWriter& record) const {
+  record.put(points_);
+  for (const AttributeRange& range : ranges_) {
+    record.put(range.min);
+    record.put(range.max);
+  }
+  std::uint64_t without = 0;
+  for (const std::uint64_t points : intensities_) {
+    if (points == 0) {
+      ++without;
+      continue;
+    }
+    record.putShort(without);
+    record.putShort(points);
+    without = 0;
+  }
+  record.putShort(0);
+  record.putShort(0);
+}
+
+void AttributeStats::addFrom(RecordReader& record) {
+  points_ += record.get<std::uint64_t>();
+  for (AttributeRange& range : ranges_) {
+    range.min = std::min(range.min, record.get<double>());
+    range.max = std::max(range.max, record.get<double>());
+  }
+  std::size_t value = 0;
+  for (;;) {
+    value += record.getShort();
+    const std::uint64_t points = record.getShort();
+    if (points == 0) break;
+    if (value >= intensities_.size()) throw Error("a histogram of the journal is too long");
+    intensities_[value++] += points;
+  }
 }
 
 std::vector<AttributeRange> AttributeStats::ranges() const {

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "converter/attribute_variation.h"
+#include "converter/record_bytes.h"
 #include "core/point_layout.h"
 #include "io/store.h"
 
@@ -13,10 +15,15 @@ namespace strata {
 class AttributeStats {
  public:
   explicit AttributeStats(const PointLayout& layout);
-  /// `records`: `count` attribute records, `stride` bytes apart.
-  void gather(const std::byte* records, std::size_t stride, std::size_t count);
+  /// `records`: `count` attribute records, `stride` bytes apart; `variation` is theirs.
+  void gather(const std::byte* records, std::size_t stride, std::size_t count, const AttributeVariation& variation);
   void add(const AttributeStats& other);
+  void clear();
   std::vector<AttributeRange> ranges() const;
+
+  void write(RecordWriter& record) const;
+  /// Adds what write() wrote for the same layout.
+  void addFrom(RecordReader& record);
 
  private:
   PointLayout layout_;

@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <span>
 
+#include "converter/conversion_terms.h"
 #include "core/error.h"
 #include "io/output_file.h"
 #include "io/store_files.h"
@@ -20,7 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLockFile = "lock";
+constexpr const char* kJournalFile = "journal";
 constexpr std::array<std::string_view, 4> kStoreFiles{kInfoFile, kHierarchyFile, kPointsFile, kNewPointsFile};
+constexpr std::array<std::string_view, 4> kWorkFiles{kLockFile, kJournalFile, "spill", "points.built"};
 
 /// The name of an entry that a store, or a store being built, does not have; empty where there is none.
 std::string strangeEntry(const std::string& folder) {
@@ -28,16 +32,23 @@ std::string strangeEntry(const std::string& folder) {
   for (auto entry = fs::directory_iterator(folder, failure); !failure && entry != fs::directory_iterator();
        entry.increment(failure)) {
     const std::string name = entry->path().filename().string();
-    if (name != kLockFile && std::find(kStoreFiles.begin(), kStoreFiles.end(), name) == kStoreFiles.end()) return name;
+    if (std::find(kWorkFiles.begin(), kWorkFiles.end(), name) == kWorkFiles.end() &&
+        std::find(kStoreFiles.begin(), kStoreFiles.end(), name) == kStoreFiles.end())
+      return name;
   }
   if (failure) throw Error(folder, "reading the folder: " + failure.message());
   return {};
 }
 
+void removeFiles(const std::string& folder, std::span<const std::string_view> files) {
+  std::error_code ignored;
+  for (const std::string_view file : files) fs::remove(fs::path(folder) / file, ignored);
+}
+
 void removeStoreFolder(const std::string& folder) {
   std::error_code ignored;
-  for (const std::string_view file : kStoreFiles) fs::remove(fs::path(folder) / file, ignored);
-  fs::remove(fs::path(folder) / kLockFile, ignored);
+  removeFiles(folder, kStoreFiles);
+  removeFiles(folder, kWorkFiles);
   fs::remove(folder, ignored);  // fails, as it should, where anything else is in it
 }
 
@@ -55,6 +66,16 @@ bool isTaken(const std::string& path) {
   return true;
 }
 
+/// The temporary points may lie in a folder of their own.
+void removeSpillOf(const std::string& journalPath) {
+  try {
+    const std::string spill = readHead(Journal(journalPath)).spillPath;
+    std::error_code ignored;
+    if (!spill.empty()) fs::remove(spill, ignored);
+  } catch (const Error&) {  // a journal that tells of nothing
+  }
+}
+
 }  // namespace
 
 void checkOutput(const std::string& output, bool force) {
@@ -70,7 +91,7 @@ void checkOutput(const std::string& output, bool force) {
     throw Error(output, "holds " + strange + ", which is no part of a store, so --force does not replace it");
 }
 
-BuildFolder::BuildFolder(const std::string& output, bool force)
+BuildFolder::BuildFolder(const std::string& output, bool force, bool resume)
     : output_(output), path_(output + ".building"), force_(force) {
   std::error_code failure;
   fs::create_directory(path_, failure);
@@ -83,14 +104,29 @@ BuildFolder::BuildFolder(const std::string& output, bool force)
     ::close(lock_);
     throw Error(path_, "another conversion is writing this store");
   }
+  const bool interrupted = fs::exists(journalPath(), failure);
+  if (interrupted && resume) return;
+  if (interrupted && !force) {
+    ::close(lock_);
+    throw Error(path_, "holds an interrupted conversion; --resume goes on with it, --force starts it again");
+  }
+  if (interrupted) removeSpillOf(journalPath());
+  removeFiles(path_, kStoreFiles);
+  removeFiles(path_, std::span(kWorkFiles).subspan(1));  // all but the lock
 }
 
 BuildFolder::~BuildFolder() {
-  removeStoreFolder(path_);  // after publish(): the store that was replaced, or nothing
+  if (!kept_) removeStoreFolder(path_);  // after publish(): the store that was replaced, or nothing
   ::close(lock_);
 }
 
+void BuildFolder::putBackBuiltPoints() {
+  std::error_code failure;
+  if (fs::exists(builtPointsPath(), failure)) fs::rename(builtPointsPath(), path_ + "/" + kPointsFile);
+}
+
 void BuildFolder::publish() {
+  removeFiles(path_, std::span(kWorkFiles).subspan(1));
   syncFolder(path_);
   if (isTaken(output_)) {
     checkOutput(output_, force_);

@@ -1,15 +1,19 @@
 #include <malloc.h>
 #include <sys/resource.h>
-#include <tbb/parallel_pipeline.h>
-#include <tbb/task_arena.h>
+#include <tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
+#include <random>
 #include <thread>
 
 #include "converter/add_normals.h"
+#include "converter/build_chunks.h"
 #include "converter/build_folder.h"
 #include "converter/chunk_builder.h"
+#include "converter/conversion_terms.h"
 #include "converter/disk_room.h"
 #include "converter/distribute.h"
 #include "converter/merge.h"
@@ -27,11 +31,26 @@ namespace fs = std::filesystem;
 /// Chunks that are built at the same time share the memory cap; the number is fixed so that the chunks, and with
 /// them the store's bytes, do not depend on the number of threads.
 constexpr int kChunksAtOnce = 4;
-/// Memory that building a chunk takes: the packed points twice, keys and indices twice, and the payloads.
-std::uint64_t chunkPointLimit(std::uint64_t memoryBytes, const PackedFormat& format) {
+/// No chunk is larger, however much memory there is: stopping waits for the chunks that are being built.
+constexpr std::uint64_t kMostChunkPoints = 3'000'000;
+/// With chunks of fewer points than this the tree above them would outweigh them.
+constexpr std::uint64_t kLeastChunkPoints = 20'000;
+
+/// Points of a chunk, so that all of what is in memory while building stays under the cap. Building a chunk takes its
+/// points, what chunk_builder.h says, and its finished nodes; what grows with the scan is taken off first: the
+/// hierarchy's records (twice while their vector grows) and the cursors of the runs.
+std::uint64_t chunkPointLimit(const ConvertOptions& options, const PackedFormat& format, std::uint64_t points) {
   constexpr std::uint64_t kProgramBytes = std::uint64_t{160} << 20;
-  const std::uint64_t perPoint = 2 * format.stride() + 2 * 12 + 16;
-  return (memoryBytes - kProgramBytes) / 2 / kChunksAtOnce / perPoint;
+  constexpr std::uint64_t kRunBytes = 2048;  // for about a million points
+  const std::uint64_t nodes = 4 * points / options.nodePoints + 1;
+  const std::uint64_t growing = 2 * sizeof(NodeRecord) * nodes + (points >> 20) * kRunBytes;
+  const std::uint64_t perPoint = 2 * kChunksAtOnce * (chunkBytesPerPoint(format) + format.stride());
+  const std::uint64_t least = kProgramBytes + growing + kLeastChunkPoints * perPoint;
+  if (options.memoryBytes < least)
+    throw Error("--memory", "is too little for so many points in nodes of so few, found " +
+                                std::to_string(options.memoryBytes >> 20) + "M (expected at least " +
+                                std::to_string((least >> 20) + 1) + "M)");
+  return std::min(kMostChunkPoints, (options.memoryBytes - kProgramBytes - growing) / perPoint);
 }
 
 /// CPU time of the process so far, all threads.
@@ -75,31 +94,74 @@ using Sources = std::vector<std::unique_ptr<PointSource>>;
 
 PackedFormat packedFormat(const Survey& frame) { return {frame.cubeBits > 32, frame.layout.stride()}; }
 
-/// Reads the inputs into buckets. Where headers cannot be believed their points are read once more for their extent.
-Distribution readInputs(const Sources& sources, const ConvertOptions& options, Survey& frame, Spill& spill,
-                        StageClock& clock, const ConvertControl& control) {
-  std::vector<std::optional<MeasuredSource>> measured(sources.size());
-  bool measuring = false;
-  for (std::size_t i = 0; i < sources.size(); ++i)
-    if (!headerBoundsUsable(sources[i]->info()) && sources[i]->info().pointCount > 0) {
-      if (!measuring) clock.begin(stage::kMeasure);
-      measuring = true;
-      measured[i] = measureSource(*sources[i], options.threads, control);
-    } else if (sources[i]->info().pointCount == 0) {
-      measured[i] = MeasuredSource{};
+/// Sources that have been measured, and whether they all had to be because the first reading showed headers to lie.
+struct Measured {
+  std::vector<std::optional<MeasuredSource>> sources;
+  bool all = false;
+};
+
+void appendMeasured(Journal& journal, const Measured& measured) {
+  RecordWriter record;
+  record.put(measured.all);
+  for (const std::optional<MeasuredSource>& source : measured.sources) {
+    record.put(source.has_value());
+    record.put(source.value_or(MeasuredSource{}));
+  }
+  journal.append(RecordKind::measured, record.bytes());
+}
+
+bool findMeasured(const Journal& journal, Measured& out) {
+  for (const Journal::Place& place : journal.found()) {
+    if (place.kind != RecordKind::measured) continue;
+    const std::vector<std::byte> payload = journal.payload(place);
+    RecordReader record(payload);
+    out.all = record.get<bool>();
+    for (std::optional<MeasuredSource>& source : out.sources) {
+      const bool has = record.get<bool>();
+      source = record.get<MeasuredSource>();
+      if (!has) source.reset();
     }
+    return true;
+  }
+  return false;
+}
+
+void measure(const Sources& sources, bool all, const ConvertOptions& options, const ConvertControl& control,
+             Measured& out) {
+  out.all = all;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (sources[i]->info().pointCount == 0)
+      out.sources[i] = MeasuredSource{};
+    else if (all || !headerBoundsUsable(sources[i]->info()))
+      out.sources[i] = measureSource(*sources[i], options.threads, control);
+}
+
+/// Reads the inputs into buckets. Where headers cannot be believed their points are read once more for their extent.
+Distribution readInputs(const Sources& sources, const ConvertOptions& options, Survey& frame, Workspace work,
+                        std::uint64_t journalHead, StageClock& clock, const ConvertControl& control) {
+  Measured measured{std::vector<std::optional<MeasuredSource>>(sources.size()), false};
+  if (!findMeasured(work.journal, measured)) {
+    if (std::any_of(sources.begin(), sources.end(), [](const auto& source) {
+          return source->info().pointCount > 0 && !headerBoundsUsable(source->info());
+        }))
+      clock.begin(stage::kMeasure);
+    measure(sources, false, options, control, measured);
+    appendMeasured(work.journal, measured);
+  }
   clock.begin(stage::kDistribute);
-  for (int attempt = 0;; ++attempt) {
-    frame = survey(sources, measured);
+  for (;;) {
+    frame = survey(sources, measured.sources);
     const PackedFormat format = packedFormat(frame);
-    Distribution all =
-        distribute(sources, frame, format, chunkPointLimit(options.memoryBytes, format), options, spill, control);
+    Distribution all = distribute(sources, frame, format, chunkPointLimit(options, format, frame.claimedPoints),
+                                  options, work, control);
     const double extent = glm::max(all.bounds.size().x, glm::max(all.bounds.size().y, all.bounds.size().z));
     const bool farTooLarge = all.points > 0 && extent + 1.0 <= std::ldexp(1.0, frame.cubeBits - 2);
-    if (attempt > 0 || (!all.outsideCube && !farTooLarge)) return all;
+    if (measured.all || (!all.outsideCube && !farTooLarge)) return all;
     all = {};
-    spill.clear();
-    for (std::size_t i = 0; i < sources.size(); ++i) measured[i] = measureSource(*sources[i], options.threads, control);
+    work.journal.rewind(journalHead);
+    work.spill.truncate(0);
+    measure(sources, true, options, control, measured);
+    appendMeasured(work.journal, measured);
   }
 }
 
@@ -142,57 +204,70 @@ StoreInfo storeInfo(const Sources& sources, const ConvertOptions& options, const
   return info;
 }
 
-/// Builds all chunks, several at a time, and writes them in order.
-std::vector<ChunkTop> buildChunks(const BuildFrame& frame, std::vector<Bucket>& buckets, const ConvertOptions& options,
-                                  Spill& spill, NodeSink& sink, const ConvertControl& control) {
-  struct Work {
-    NodeKey cell;
-    std::vector<std::byte> points;
-    BuiltChunk built;
-    std::uint64_t count = 0;
-  };
-  std::vector<ChunkTop> tops;
-  ScratchPool scratches;
-  std::size_t next = 0;
-  std::uint64_t done = 0;
-  tbb::task_arena arena(options.threads);
-  arena.execute([&] {
-    tbb::parallel_pipeline(
-        static_cast<std::size_t>(std::min(options.threads, kChunksAtOnce)),
-        tbb::make_filter<void, std::shared_ptr<Work>>(tbb::filter_mode::serial_in_order,
-                                                      [&](tbb::flow_control& flow) -> std::shared_ptr<Work> {
-                                                        if (next == buckets.size()) {
-                                                          flow.stop();
-                                                          return nullptr;
-                                                        }
-                                                        control.checkStop();
-                                                        Bucket& bucket = buckets[next++];
-                                                        auto work = std::make_shared<Work>();
-                                                        work->cell = bucket.cell;
-                                                        work->count = bucket.points;
-                                                        work->points.reserve(bucket.points * frame.format.stride());
-                                                        for (Bucket::Block& block : bucket.blocks)
-                                                          spill.take(block.handle, work->points);
-                                                        bucket.blocks = {};
-                                                        return work;
-                                                      }) &
-            tbb::make_filter<std::shared_ptr<Work>, std::shared_ptr<Work>>(
-                tbb::filter_mode::parallel,
-                [&](std::shared_ptr<Work> work) {
-                  std::unique_ptr<ChunkScratch> scratch = scratches.lend();
-                  work->built = buildChunk(frame, work->cell, std::move(work->points), *scratch);
-                  scratches.giveBack(std::move(scratch));
-                  return work;
-                }) &
-            tbb::make_filter<std::shared_ptr<Work>, void>(
-                tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Work>& work) {
-                  sink.write(std::move(work->built.nodes));
-                  tops.push_back({work->cell, spill.put(work->built.topPoints), std::move(work->built.topChildren)});
-                  control.progress({stage::kBuild, done += work->count, frame.info.points});
-                }));
-  });
-  return tops;
+/// A place for temporary points that no other conversion has.
+std::string newSpillPath(const ConvertOptions& options) {
+  if (options.tempFolder.empty()) return {};
+  std::random_device random;
+  const std::string name = fs::path(options.output).filename().string() + "-" + std::to_string(random()) + ".spill";
+  return fs::absolute(fs::path(options.tempFolder) / name).string();
 }
+
+/// Cuts off and punches out what was written to the spill but did not get into the journal.
+void dropStrays(Workspace work) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> known;
+  for (const Journal::Place& place : work.journal.found())
+    if (place.kind == RecordKind::runs) {
+      for (const WrittenRun& w : readRuns(work.journal, place).written)
+        known.emplace_back(w.run.offset, w.run.offset + w.run.points * w.run.shape.stride());
+    } else if (place.kind == RecordKind::chunk) {
+      const Spill::Handle top = readChunkTop(work.journal, place);
+      known.emplace_back(top.offset, top.offset + top.bytes);
+    }
+  std::sort(known.begin(), known.end());
+  std::uint64_t end = 0;
+  for (const auto& [first, last] : known) {
+    work.spill.release(end, first);
+    end = std::max(end, last);
+  }
+  work.spill.truncate(end);
+}
+
+/// The folder, the journal and the spill of a conversion; taken up where an interrupted one left them.
+class Session {
+ public:
+  Session(const Sources& sources, const ConvertOptions& options)
+      : folder(options.output, options.force, options.resume) {
+    folder.keep(options.resume);  // what cannot be resumed stays as it is
+    folder.putBackBuiltPoints();
+    journal.emplace(folder.journalPath());
+    JournalHead head{newSpillPath(options), termsOf(sources, options)};
+    if (journal->found().empty()) {
+      appendHead(*journal, head);
+    } else {
+      const JournalHead begun = readHead(*journal);
+      checkSameTerms(folder.path(), begun.terms, head.terms);
+      head.spillPath = begun.spillPath;
+    }
+    headEnd = journal->found().empty() ? journal->bytes() : journal->found()[0].offset + journal->found()[0].bytes;
+    const std::string path = head.spillPath.empty() ? folder.spillPath() : head.spillPath;
+    const bool begun = journal->found().size() > 1 || fs::exists(path);
+    spill.emplace(path, begun ? Spill::Open::existing : Spill::Open::create);
+    if (begun) dropStrays({*spill, *journal});
+    folder.keep(false);
+  }
+
+  Workspace workspace() { return {*spill, *journal}; }
+  /// Leaves everything for a conversion to go on with.
+  void keep() {
+    spill->keep();
+    folder.keep();
+  }
+
+  BuildFolder folder;
+  std::optional<Journal> journal;
+  std::optional<Spill> spill;
+  std::uint64_t headEnd = 0;  ///< of the journal's first record
+};
 
 void countLevels(const Hierarchy& hierarchy, ConvertReport& report) {
   for (const NodeRecord& node : hierarchy.nodes) {
@@ -204,9 +279,64 @@ void countLevels(const Hierarchy& hierarchy, ConvertReport& report) {
   }
 }
 
+/// All stages from reading the points on.
+void buildStore(const Sources& sources, const ConvertOptions& options, const ConvertControl& control, Session& session,
+                StageClock& clock, ConvertReport& report) {
+  const Workspace work = session.workspace();
+  Survey surveyed;
+  Distribution all = readInputs(sources, options, surveyed, work, session.headEnd, clock, control);
+  checkCounts(sources, options, all);
+
+  clock.begin(stage::kBuild);
+  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed), options.sampling,
+                         options.lodColour};
+  std::vector<ChunkRecord> found = readChunks(work.journal);
+  std::vector<NodeSink::Written> written;
+  for (ChunkRecord& chunk : found) written.push_back(std::move(chunk.written));
+  NodeSink sink(session.folder.path(), written);
+  written = {};
+  found.resize(sink.chunksFound());
+  std::vector<ChunkTop> tops = buildChunks(frame, all, std::move(found), kChunksAtOnce, options, work, sink, control);
+  all = {};
+  clock.begin(stage::kMerge);
+  mergeChunks(frame, std::move(tops), work.spill, sink, control);
+
+  clock.begin(stage::kWrite);
+  Hierarchy hierarchy = sink.finish();
+  StoreInfo info = frame.info;
+  info.nodes = hierarchy.nodes.size();
+  for (const NodeRecord& node : hierarchy.nodes) info.levels = std::max(info.levels, NodeKey{node.key}.level() + 1);
+  const std::string pointsPath = session.folder.path() + "/" + kPointsFile;
+  std::uint64_t normalBytes = 0;
+  if (normalsMissing(info, options, control)) {
+    clock.begin(stage::kNormals);
+    const std::string newPath = session.folder.path() + "/" + kNewPointsFile;
+    normalBytes = addNormals(info, hierarchy, pointsPath, newPath, viewpointOf(sources), options, control);
+    fs::rename(pointsPath, session.folder.builtPointsPath());  // what the journal tells of, until the end
+    fs::rename(newPath, pointsPath);
+    normalBytes += fs::file_size(pointsPath);
+    clock.begin(stage::kWrite);
+  }
+  writeStoreFiles(session.folder.path(), info, hierarchy, fs::file_size(pointsPath));
+  report.tempPeakBytes = std::max(work.spill.peakBytes() + work.journal.bytes(), normalBytes);
+  work.spill.discard();
+  session.folder.publish();
+  clock.end();
+
+  report.points = info.points;
+  report.nodes = info.nodes;
+  report.skipped = info.skipped;
+  countLevels(hierarchy, report);
+  report.planes = planeSizes(Store(options.output));
+  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
+    report.outputBytes += fs::file_size(options.output + "/" + file);
+}
+
 /// Builds the store of sources that are open; `clock` has begun to time the survey.
 void convertOpen(const Sources& sources, const ConvertOptions& options, const ConvertControl& control,
                  StageClock& clock, ConvertReport& report) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(options.threads));  // more than there are cores, if asked
   for (const auto& source : sources) {
     report.inputBytes += source->info().fileBytes;
     if (source->info().pointCount == 0 && sources.size() == 1) throw Error(source->info().path, "has no points");
@@ -217,47 +347,13 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
        roomWarnings(storeFolder, options.tempFolder.empty() ? storeFolder : options.tempFolder, usualDiskNeed(sources)))
     control.warn(warning);
 
-  BuildFolder folder(options.output, options.force);
-  Spill spill(options.tempFolder.empty() ? folder.path() : options.tempFolder, options.memoryBytes / 8);
-  Survey surveyed;
-  Distribution all = readInputs(sources, options, surveyed, spill, clock, control);
-  checkCounts(sources, options, all);
-
-  clock.begin(stage::kBuild);
-  const BuildFrame frame{storeInfo(sources, options, surveyed, all), packedFormat(surveyed), options.sampling,
-                         options.lodColour};
-  NodeSink sink(folder.path());
-  std::vector<ChunkTop> tops = buildChunks(frame, all.buckets, options, spill, sink, control);
-  clock.begin(stage::kMerge);
-  mergeChunks(frame, std::move(tops), spill, sink, control);
-
-  clock.begin(stage::kWrite);
-  Hierarchy hierarchy = sink.finish();
-  StoreInfo info = frame.info;
-  info.nodes = hierarchy.nodes.size();
-  for (const NodeRecord& node : hierarchy.nodes) info.levels = std::max(info.levels, NodeKey{node.key}.level() + 1);
-  const std::string pointsPath = folder.path() + "/" + kPointsFile;
-  std::uint64_t normalBytes = 0;
-  if (normalsMissing(info, options, control)) {
-    clock.begin(stage::kNormals);
-    const std::string newPath = folder.path() + "/" + kNewPointsFile;
-    normalBytes = addNormals(info, hierarchy, pointsPath, newPath, viewpointOf(sources), options, control);
-    fs::rename(newPath, pointsPath);
-    normalBytes += fs::file_size(pointsPath);
-    clock.begin(stage::kWrite);
+  Session session(sources, options);
+  try {
+    buildStore(sources, options, control, session, clock, report);
+  } catch (const Stopped&) {
+    session.keep();
+    throw;
   }
-  writeStoreFiles(folder.path(), info, hierarchy, fs::file_size(pointsPath));
-  folder.publish();
-  clock.end();
-
-  report.points = info.points;
-  report.nodes = info.nodes;
-  report.skipped = info.skipped;
-  countLevels(hierarchy, report);
-  report.planes = planeSizes(Store(options.output));
-  report.tempPeakBytes = std::max(spill.peakFileBytes(), normalBytes);
-  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
-    report.outputBytes += fs::file_size(options.output + "/" + file);
 }
 
 /// What was asked, with everything said that had a default; refuses what cannot be written to.
@@ -285,7 +381,9 @@ ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control
   ConvertReport report;
   StageClock clock(report, control);
   clock.begin(stage::kSurvey);
-  convertOpen(openSources(options.inputs, options.source), options, control, clock, report);
+  SourceOptions source = options.source;
+  source.stop = control.stop;
+  convertOpen(openSources(options.inputs, source), options, control, clock, report);
   return report;
 }
 

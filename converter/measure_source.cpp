@@ -14,7 +14,8 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kMeasureBlock = 65536;
-constexpr std::size_t kSampleEvery = 101;  // points; every so many count for the percentiles
+constexpr std::size_t kSampleEvery = 101;  // points; every so many count for the percentiles, fewer of huge scans
+constexpr std::uint64_t kMostSamples = 500000;
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -40,6 +41,7 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
   std::vector<glm::dvec3> sample;
   std::mutex mutex;
   std::atomic<std::uint64_t> done{0};
+  const std::size_t sampleEvery = std::max<std::uint64_t>(kSampleEvery, source.info().pointCount / kMostSamples | 1);
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, source.partCount(), [&](std::size_t part) {
@@ -54,7 +56,7 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
         for (const glm::dvec3& p : block.positions) {
           if (!finite(p)) continue;
           bounds.add(p);
-          if (seen++ % kSampleEvery == 0) sampleHere.push_back(p);
+          if (seen++ % sampleEvery == 0) sampleHere.push_back(p);
           ++exponents[std::ilogb(std::max(glm::compMax(glm::abs(p)), 1e-300))];
         }
         control.progress({stage::kMeasure, done += block.count(), source.info().pointCount});

@@ -26,7 +26,7 @@ class Merger {
     control_.checkStop();
     if (first->key == cell) {
       OpenNode top{cell, {}, std::move(first->children)};
-      spill_.take(first->points, top.points);
+      spill_.get(first->points, top.points);
       return top;
     }
     std::vector<OpenNode> children;

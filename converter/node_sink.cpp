@@ -1,9 +1,10 @@
 #include "converter/node_sink.h"
 
 #include <algorithm>
-#include <span>
+#include <filesystem>
 #include <utility>
 
+#include "io/checksum.h"
 #include "io/store_files.h"
 
 namespace strata {
@@ -46,11 +47,49 @@ Hierarchy linkBreadthFirst(std::vector<NodeRecord> records) {
   return {std::move(records)};
 }
 
+/// Node by node: each payload's checksum is the seed of the next.
+std::uint64_t checksumOf(const OutputFile& file, const std::vector<NodeRecord>& nodes) {
+  std::vector<std::byte> payload;
+  std::uint64_t sum = 0;
+  for (const NodeRecord& node : nodes) {
+    payload.resize(node.payloadBytes);
+    file.readAt(node.offset, payload);
+    sum = checksum(payload, sum);
+  }
+  return sum;
+}
+
+/// How many of the chunks are in points.bin as they were written.
+std::size_t soundChunks(const std::string& path, std::span<const NodeSink::Written> chunks) {
+  std::error_code failure;
+  const std::uint64_t bytes = std::filesystem::file_size(path, failure);
+  if (failure || chunks.empty()) return 0;
+  const OutputFile file(path, std::min(chunks.back().end, bytes));
+  std::size_t sound = 0;
+  while (sound < chunks.size() && chunks[sound].end <= file.size() &&
+         checksumOf(file, chunks[sound].records) == chunks[sound].checksum)
+    ++sound;
+  return sound;
+}
+
 }  // namespace
 
-NodeSink::NodeSink(const std::string& folder) : file_(folder + "/" + kPointsFile) {
-  const PointsHeader header = pointsHeader();
-  file_.append(std::as_bytes(std::span(&header, 1)));
+NodeSink::NodeSink(const std::string& folder, std::span<const Written> chunks)
+    : chunksFound_(soundChunks(folder + "/" + kPointsFile, chunks)) {
+  if (chunksFound_ > 0) {
+    file_ = std::make_unique<OutputFile>(folder + "/" + kPointsFile, chunks[chunksFound_ - 1].end);
+  } else {
+    file_ = std::make_unique<OutputFile>(folder + "/" + kPointsFile);
+    const PointsHeader header = pointsHeader();
+    file_->append(std::as_bytes(std::span(&header, 1)));
+  }
+  for (const Written& chunk : chunks.first(chunksFound_))
+    records_.insert(records_.end(), chunk.records.begin(), chunk.records.end());
+}
+
+void NodeSink::flush() {
+  file_->append(buffer_);
+  buffer_.clear();
 }
 
 void NodeSink::write(std::vector<BuiltNode> nodes) {
@@ -58,17 +97,24 @@ void NodeSink::write(std::vector<BuiltNode> nodes) {
     node.record.offset = bytes();
     buffer_.insert(buffer_.end(), node.payload.begin(), node.payload.end());
     records_.push_back(node.record);
-    if (buffer_.size() >= kBufferBytes) {
-      file_.append(buffer_);
-      buffer_.clear();
-    }
+    if (buffer_.size() >= kBufferBytes) flush();
   }
 }
 
+NodeSink::Written NodeSink::writeChunk(std::vector<BuiltNode> nodes) {
+  Written out;
+  const std::size_t first = records_.size();
+  for (const BuiltNode& node : nodes) out.checksum = checksum(node.payload, out.checksum);
+  write(std::move(nodes));
+  flush();
+  out.end = bytes();
+  out.records.assign(records_.begin() + static_cast<std::ptrdiff_t>(first), records_.end());
+  return out;
+}
+
 Hierarchy NodeSink::finish() {
-  file_.append(buffer_);
-  buffer_.clear();
-  file_.finish();
+  flush();
+  file_->finish();
   return linkBreadthFirst(std::move(records_));
 }
 

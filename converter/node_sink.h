@@ -1,4 +1,6 @@
 #pragma once
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,14 +13,31 @@ namespace strata {
 /// the file.
 class NodeSink {
  public:
-  explicit NodeSink(const std::string& folder);
+  /// What one chunk left in points.bin, up to `end`.
+  struct Written {
+    std::uint64_t end = 0;
+    std::uint64_t checksum = 0;  ///< of its payloads, each seeded with the one before
+    std::vector<NodeRecord> records;
+  };
+
+  /// `chunks`: what an interrupted conversion had written, empty when there was none. They are checked; those from
+  /// the first on that is damaged are not counted.
+  NodeSink(const std::string& folder, std::span<const Written> chunks);
+  /// Chunks of an interrupted conversion that are there.
+  std::size_t chunksFound() const { return chunksFound_; }
+
   void write(std::vector<BuiltNode> nodes);
+  /// The same, but everything is handed to the system when it returns.
+  Written writeChunk(std::vector<BuiltNode> nodes);
   /// Completes points.bin and returns the records linked in breadth-first order.
   Hierarchy finish();
-  std::uint64_t bytes() const { return file_.size() + buffer_.size(); }
+  std::uint64_t bytes() const { return file_->size() + buffer_.size(); }
 
  private:
-  OutputFile file_;
+  void flush();
+
+  std::size_t chunksFound_ = 0;
+  std::unique_ptr<OutputFile> file_;
   std::vector<std::byte> buffer_;
   std::vector<NodeRecord> records_;
 };

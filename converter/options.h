@@ -22,7 +22,8 @@ struct ConvertOptions {
   std::uint32_t nodePoints = 65536;
   Sampling sampling = Sampling::ntree;
   LodColour lodColour = LodColour::first;
-  bool force = false;    ///< replace an existing store
+  bool force = false;    ///< replace an existing store, start an interrupted conversion again
+  bool resume = false;   ///< go on with an interrupted conversion, if there is one
   bool normals = false;  ///< estimate them where the scans have none
   SourceOptions source;
 };
@@ -70,12 +71,13 @@ struct ConvertControl {
   std::function<void(const Progress&)> progress = [](const Progress&) {};
   std::function<void(const std::string&)> warn = [](const std::string& message) { logWarning(message); };
   const std::atomic<bool>* stop = nullptr;  ///< set from a signal handler
-  /// Throws Error("stopped") when the user asked to.
+  /// Throws Stopped when the user asked to.
   void checkStop() const;
 };
 
-/// Converts the inputs to a store. Nothing carries the final name before it is complete and durable; whatever was
-/// begun is removed when an Error is thrown. Same inputs and options give the same bytes for any number of threads.
+/// Converts the inputs to a store. Nothing carries the final name before it is complete and durable. Whatever was begun
+/// is removed when an Error is thrown, but stays for options.resume when that is Stopped. Same inputs and options give
+/// the same bytes for any number of threads.
 ConvertReport convert(const ConvertOptions& options, const ConvertControl& control);
 /// The same for scans that are open already; options.inputs is not looked at.
 ConvertReport convert(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& options,

@@ -17,6 +17,12 @@ class PrefixReader final : public PointReader {
     left_ -= block.count();
     return true;
   }
+  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
+    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(maxPoints, left_));
+    if (wanted == 0 || !reader_->readIntegers(block, wanted)) return false;
+    left_ -= block.count();
+    return true;
+  }
 
  private:
   std::unique_ptr<PointReader> reader_;

@@ -2,51 +2,58 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace strata {
 
-/// Where blocks of points wait between stages: in memory up to a limit, then LZ4-packed in one temporary file. The
-/// file has no name from the moment it is open, so that nothing of it stays after a crash; what has been taken is
-/// punched out of it. All functions are thread-safe.
+/// The temporary file where points wait between the stages. It has a name, so that an interrupted conversion finds
+/// it again; what is no longer needed is punched out of it. All functions are thread-safe; failures throw Error.
 class Spill {
  public:
-  struct Handle {
-    std::uint64_t offset = 0;  ///< in the file, when `memory` is empty
-    std::uint32_t storedBytes = 0;
-    std::uint32_t rawBytes = 0;
-    std::vector<std::byte> memory;  ///< packed bytes, while they fit
-  };
+  enum class Open { create, existing };
 
-  Spill(const std::string& folder, std::uint64_t memoryLimit);
+  /// `path` is created, or has to exist already.
+  Spill(std::string path, Open how);
+  /// Removes the file unless keep() was called.
   ~Spill();
   Spill(const Spill&) = delete;
   Spill& operator=(const Spill&) = delete;
 
-  Handle put(std::span<const std::byte> raw);
-  /// Appends the block's bytes to `out` and gives its room back. Throws Error when the disk fails.
-  void take(Handle& handle, std::vector<std::byte>& out);
+  void keep() { kept_ = true; }
+  /// Removes the file's name now; its points can still be read.
+  void discard();
+  const std::string& path() const { return path_; }
 
-  /// Forgets every block; none may be taken any more. No other call may run at the same time.
-  void clear();
+  /// Appends the bytes, from the start of a page on; returns where they stand.
+  std::uint64_t append(std::span<const std::byte> bytes);
+  void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 
-  std::uint64_t peakFileBytes() const { return peakFileBytes_.load(); }
+  /// Bytes that are kept together and checked when they are read.
+  struct Handle {
+    std::uint64_t offset = 0, bytes = 0, checksum = 0;
+  };
+  Handle put(std::span<const std::byte> bytes);
+  /// Appends the bytes to `out`.
+  void get(const Handle& handle, std::vector<std::byte>& out) const;
+
+  /// Gives the whole pages between the offsets back to the file system. Failing to is harmless.
+  void release(std::uint64_t begin, std::uint64_t end);
+  /// Forgets everything from `end` on. No other call may run at the same time.
+  void truncate(std::uint64_t end);
+
+  /// Most disk held at a time so far, by this process.
+  std::uint64_t peakBytes() const { return peakBytes_.load(); }
 
  private:
-  int file();
+  void notePeak();
 
-  const std::string folder_;
-  const std::uint64_t memoryLimit_;
-  std::atomic<std::uint64_t> memoryBytes_{0};
-  std::atomic<std::uint64_t> fileBytes_{0};  ///< held in the file now
-  std::atomic<std::uint64_t> peakFileBytes_{0};
-  std::mutex mutex_;
-  int descriptor_ = -1;        ///< guarded by mutex_ until open
-  std::uint64_t fileEnd_ = 0;  ///< guarded by mutex_
+  const std::string path_;
+  int descriptor_ = -1;
+  std::atomic<bool> kept_{false};
+  std::atomic<std::uint64_t> end_{0};
+  std::atomic<std::uint64_t> peakBytes_{0};
 };
 
 }  // namespace strata

@@ -41,11 +41,34 @@ void showWarning(ProgressDisplay::Style style, const std::string& message) {
     std::printf("%s\n", warningJson(message).c_str());
 }
 
+/// The command line with --resume, as a shell takes it.
+std::string resumeCommand(int argc, char** argv) {
+  std::string command;
+  bool resumes = false;
+  for (int i = 0; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--force") continue;  // would start again
+    resumes = resumes || word == "--resume";
+    const bool plain = !word.empty() && word.find_first_not_of(
+                                            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
+                                            "0123456789-_./=,:+%@") == std::string::npos;
+    command += i > 0 ? " " : "";
+    if (plain) {
+      command += word;
+      continue;
+    }
+    command += '\'';
+    for (const char c : word) command += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    command += '\'';
+  }
+  return resumes ? command : command + " --resume";
+}
+
 int run(int argc, char** argv) {
   CLI::App app("Converts laser scans to a Strata store.", "strata-convert");
   ConvertOptions options;
   std::string memory = "2G";
-  bool json = false, resume = false, plan = false;
+  bool json = false, plan = false;
   app.add_option("INPUT", options.inputs, "scan files, folders, or synthetic:NAME?points=1e6&seed=1")->required();
   app.add_option("-o,--output", options.output, "the store to make, NAME.strata");
   app.add_option("--memory", memory, "most memory to use, at least 512M")->capture_default_str();
@@ -67,8 +90,8 @@ int run(int argc, char** argv) {
   app.add_option("--columns", options.source.columns,
                  "columns of text files, as in x,y,z,intensity,r,g,b; - skips one");
   app.add_flag("--skip-damaged", options.source.skipDamaged, "convert what is sound of a damaged scan");
-  app.add_flag("--resume", resume, "take up an interrupted conversion: what it left is cleared and done again");
-  app.add_flag("--force", options.force, "replace an existing store");
+  app.add_flag("--resume", options.resume, "go on with an interrupted conversion, if there is one");
+  app.add_flag("--force", options.force, "replace an existing store; start an interrupted conversion again");
   app.add_flag("--normals", options.normals, "estimate normals for scans that have none");
   app.add_flag("--plan", plan, "say what the conversion would take, and convert nothing; -o and --temp name the disks");
   app.add_flag("--json", json, "print one JSON object as the last line; progress as JSON lines on stderr");
@@ -91,11 +114,17 @@ int run(int argc, char** argv) {
     flushOutput();
     return 0;
   }
-  const ConvertReport report = [&] {
+  const auto converted = [&] {
     ProgressDisplay display(style, stderr, threadsOf(options));
     control.progress = [&display](const Progress& progress) { display.update(progress); };
     return convert(options, control);
-  }();
+  };
+  ConvertReport report;
+  try {
+    report = converted();
+  } catch (const Stopped&) {
+    throw Error(options.output, "stopped; go on with: " + resumeCommand(argc, argv));
+  }
   RunCost cost = runCost();
   cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (json)

@@ -190,7 +190,7 @@ std::optional<std::uint8_t> sampleColourShift(const PointSource& source) {
 }
 
 void ConvertControl::checkStop() const {
-  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Error("stopped before the store was complete");
+  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Stopped();
 }
 
 bool headerBoundsUsable(const SourceInfo& info) {

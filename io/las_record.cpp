@@ -15,14 +15,13 @@ constexpr std::size_t kHead = 6;              // packed: intensity, returns, cla
 constexpr std::size_t kTailAt[2] = {16, 17};  // first byte that is kept as it stands; [1] for formats 6 to 10
 
 /// kTail: bytes copied as they stand, 0 = given at run time by `tail`. A constant lets the copy become a few moves.
-template <bool kExtended, std::size_t kTail>
-void unpack(const std::byte* record, std::size_t tail, const glm::dvec3& scale, std::span<glm::dvec3> positions,
-            std::byte* out) {
+template <bool kExtended, std::size_t kTail, typename Put, typename Position>
+void unpack(const std::byte* record, std::size_t tail, Put put, std::span<Position> positions, std::byte* out) {
   const std::size_t copied = kTail != 0 ? kTail : tail;
-  for (glm::dvec3& position : positions) {
+  for (Position& position : positions) {
     std::int32_t xyz[3];
     std::memcpy(xyz, record, sizeof xyz);
-    position = glm::dvec3(xyz[0], xyz[1], xyz[2]) * scale;
+    position = put(xyz);
 
     const auto byte = [&](std::size_t at) { return static_cast<unsigned>(record[at]); };
     const unsigned returns = byte(kReturnsAt), next = byte(kReturnsAt + 1);
@@ -113,34 +112,55 @@ PointLayout lasLayout(const LasRecordFormat& format, const std::vector<LasMeta::
 
 std::size_t lasStride(const LasRecordFormat& format) { return kHead + tailBytes(format); }
 
-void unpackLasRecords(const LasRecordFormat& format, const glm::dvec3& scale, const std::byte* records,
-                      std::span<glm::dvec3> positions, std::byte* attributes) {
+namespace {
+
+template <typename Put, typename Position>
+void unpackAll(const LasRecordFormat& format, const std::byte* records, Put put, std::span<Position> positions,
+               std::byte* attributes) {
   const std::size_t tail = tailBytes(format);
-  const auto run = [&](auto loop) { loop(records, tail, scale, positions, attributes); };
+  const auto run = [&]<bool kExtended, std::size_t kTail>() {
+    unpack<kExtended, kTail>(records, tail, put, positions, attributes);
+  };
   if (format.extended()) {
     switch (format.recordBytes) {
       case 30:
-        return run(unpack<true, 13>);
+        return run.template operator()<true, 13>();
       case 36:
-        return run(unpack<true, 19>);
+        return run.template operator()<true, 19>();
       case 38:
-        return run(unpack<true, 21>);
+        return run.template operator()<true, 21>();
       default:
-        return run(unpack<true, 0>);
+        return run.template operator()<true, 0>();
     }
   }
   switch (format.recordBytes) {
     case 20:
-      return run(unpack<false, 4>);
+      return run.template operator()<false, 4>();
     case 26:
-      return run(unpack<false, 10>);
+      return run.template operator()<false, 10>();
     case 28:
-      return run(unpack<false, 12>);
+      return run.template operator()<false, 12>();
     case 34:
-      return run(unpack<false, 18>);
+      return run.template operator()<false, 18>();
     default:
-      return run(unpack<false, 0>);
+      return run.template operator()<false, 0>();
   }
+}
+
+}  // namespace
+
+void unpackLasRecords(const LasRecordFormat& format, const glm::dvec3& scale, const std::byte* records,
+                      std::span<glm::dvec3> positions, std::byte* attributes) {
+  unpackAll(
+      format, records, [&scale](const std::int32_t(&xyz)[3]) { return glm::dvec3(xyz[0], xyz[1], xyz[2]) * scale; },
+      positions, attributes);
+}
+
+void unpackLasRecords(const LasRecordFormat& format, const std::byte* records, std::span<glm::ivec3> integers,
+                      std::byte* attributes) {
+  unpackAll(
+      format, records, [](const std::int32_t(&xyz)[3]) { return glm::ivec3(xyz[0], xyz[1], xyz[2]); }, integers,
+      attributes);
 }
 
 void packLasRecords(const LasRecordFormat& format, std::span<const glm::ivec3> integers, const std::byte* attributes,

@@ -30,6 +30,9 @@ std::size_t lasStride(const LasRecordFormat& format);
 /// packed attributes. Loses no bit of any format.
 void unpackLasRecords(const LasRecordFormat& format, const glm::dvec3& scale, const std::byte* records,
                       std::span<glm::dvec3> positions, std::byte* attributes);
+/// The same with the file's integers as they are.
+void unpackLasRecords(const LasRecordFormat& format, const std::byte* records, std::span<glm::ivec3> integers,
+                      std::byte* attributes);
 
 /// The inverse, from the file's integers; writes integers.size() records.
 void packLasRecords(const LasRecordFormat& format, std::span<const glm::ivec3> integers, const std::byte* attributes,

@@ -55,24 +55,35 @@ class LasReader final : public PointReader {
         slice_(std::max<std::size_t>(1, kSliceBytes / source.format().recordBytes) * source.format().recordBytes) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.positions, [&](std::span<glm::dvec3> positions, std::byte* attributes) {
+      unpackLasRecords(source_.format(), source_.scale(), slice_.data(), positions, attributes);
+    });
+  }
+  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
+      unpackLasRecords(source_.format(), slice_.data(), integers, attributes);
+    });
+  }
+
+ private:
+  template <typename Position, typename Unpack>
+  bool readInto(PointBlock& block, std::size_t maxPoints, std::vector<Position>& positions, Unpack unpack) {
     const LasRecordFormat& format = source_.format();
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(maxPoints, end_ - next_));
     const std::size_t stride = lasStride(format);
-    block.positions.resize(count);
+    positions.resize(count);
     block.attributes.resize(count * stride);
     const std::size_t slicePoints = slice_.size() / format.recordBytes;
     for (std::size_t done = 0; done < count;) {
       const std::size_t points = std::min(slicePoints, count - done);
       source_.readRecords(next_, std::span(slice_).first(points * format.recordBytes));
-      unpackLasRecords(format, source_.scale(), slice_.data(), std::span(block.positions).subspan(done, points),
-                       block.attributes.data() + done * stride);
+      unpack(std::span(positions).subspan(done, points), block.attributes.data() + done * stride);
       done += points;
       next_ += points;
     }
     return count != 0;
   }
 
- private:
   const LasSource& source_;
   std::uint64_t next_;
   std::uint64_t end_;

@@ -61,25 +61,36 @@ class LazReader final : public PointReader {
         batch_(kBatchPoints * record_.recordBytes) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.positions, [&](std::span<glm::dvec3> positions, std::byte* attributes) {
+      unpackLasRecords(record_, source_.header().scale, batch_.data(), positions, attributes);
+    });
+  }
+  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
+      unpackLasRecords(record_, batch_.data(), integers, attributes);
+    });
+  }
+
+ private:
+  template <typename Position, typename Unpack>
+  bool readInto(PointBlock& block, std::size_t maxPoints, std::vector<Position>& positions, Unpack unpack) {
     if (failure_ && !source_.skipDamaged()) throw *failure_;
     const std::size_t stride = lasStride(record_);
-    block.positions.resize(maxPoints);
+    positions.resize(maxPoints);
     block.attributes.resize(maxPoints * stride);
     std::size_t done = 0;
     while (done < maxPoints && !failure_) {
       const std::size_t points = decode(std::min(kBatchPoints, maxPoints - done));
       if (points == 0) break;
-      unpackLasRecords(record_, source_.header().scale, batch_.data(), std::span(block.positions).subspan(done, points),
-                       block.attributes.data() + done * stride);
+      unpack(std::span(positions).subspan(done, points), block.attributes.data() + done * stride);
       done += points;
     }
-    block.positions.resize(done);
+    positions.resize(done);
     block.attributes.resize(done * stride);
     if (done == 0 && failure_ && !source_.skipDamaged()) throw *failure_;
     return done != 0;
   }
 
- private:
   /// Fills the batch with up to `wanted` records and returns how many; fewer at the end of a run or at damage.
   std::size_t decode(std::size_t wanted) {
     try {

@@ -17,6 +17,11 @@
 #include "io/text_source.h"
 
 namespace strata {
+
+bool PointReader::readIntegers(PointBlock&, std::size_t) {
+  throw Error("this scan has no integer coordinates");  // a caller that did not look at SourceInfo::las
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,14 +133,18 @@ std::vector<std::string> scansBelow(const std::string& folder) {
 std::vector<std::unique_ptr<PointSource>> openSources(const std::vector<std::string>& inputs,
                                                       const SourceOptions& options) {
   std::vector<std::unique_ptr<PointSource>> sources;
+  const auto openNext = [&](const std::string& path) {
+    if (options.stop != nullptr && *options.stop) throw Stopped();
+    sources.push_back(openOne(path, options));
+  };
   for (const std::string& input : inputs) {
     std::error_code ignored;
     if (input.starts_with("synthetic:")) {
       sources.push_back(openSynthetic(input));
     } else if (fs::is_directory(input, ignored)) {
-      for (const std::string& scan : scansBelow(input)) sources.push_back(openOne(scan, options));
+      for (const std::string& scan : scansBelow(input)) openNext(scan);
     } else {
-      sources.push_back(openOne(input, options));
+      openNext(input);
     }
   }
   return sources;

@@ -12,6 +12,8 @@ class OutputFile {
  public:
   /// Creates or empties `path`.
   explicit OutputFile(std::string path);
+  /// Goes on behind the first `keepBytes` bytes of a file that has at least as many.
+  OutputFile(std::string path, std::uint64_t keepBytes);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -19,6 +21,7 @@ class OutputFile {
   const std::string& path() const { return path_; }
   std::uint64_t size() const { return size_; }
   void append(std::span<const std::byte> bytes);
+  void readAt(std::uint64_t offset, std::span<std::byte> bytes) const;
   void writeAt(std::uint64_t offset, std::span<const std::byte> bytes);
   /// Makes it durable (fsync) and closes it. Without it the destructor only closes.
   void finish();

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "core/box.h"
+#include "core/error.h"
 #include "core/point_layout.h"
 
 namespace strata {
@@ -14,9 +16,10 @@ namespace strata {
 /// Points as they come out of a reader, positions apart from the packed attribute records.
 struct PointBlock {
   std::vector<glm::dvec3> positions;  ///< metres, relative to SourceInfo::origin
+  std::vector<glm::ivec3> integers;   ///< instead of positions, where readIntegers() filled the block
   std::vector<std::byte> attributes;  ///< positions.size() records of SourceInfo::layout.stride() bytes
 
-  std::size_t count() const { return positions.size(); }
+  std::size_t count() const { return integers.empty() ? positions.size() : integers.size(); }
 };
 
 /// What a LAS or LAZ file says beyond its points; kept so that an export gives it back.
@@ -68,6 +71,9 @@ class PointReader {
   /// Replaces `block` by the next at most `maxPoints` points; false at the end of the part.
   /// Throws Error when the file is damaged or ends early; what was returned before stays valid.
   virtual bool read(PointBlock& block, std::size_t maxPoints) = 0;
+  /// The same, but the block gets the integers of a LAS file, whose position is origin + LasMeta::scale * integer.
+  /// Only for sources with SourceInfo::las; do not mix with read().
+  virtual bool readIntegers(PointBlock& block, std::size_t maxPoints);
 };
 
 /// One scan. Constructing it reads headers only (text and PLY/PCD may have to look further).
@@ -80,11 +86,18 @@ class PointSource {
   virtual std::unique_ptr<PointReader> openPart(std::size_t part) const = 0;
 };
 
+/// The user asked to stop.
+class Stopped : public Error {
+ public:
+  Stopped() : Error("stopped before the end") {}
+};
+
 struct SourceOptions {
   std::string columns;  ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
   std::uint64_t memoryBytes = std::uint64_t{2}
-                              << 30;  ///< a source that must hold its file whole refuses beyond a share of this
-  bool skipDamaged = false;           ///< read what is sound of a damaged file; what is missing counts as skipped
+                              << 30;        ///< a source that must hold its file whole refuses beyond a share of this
+  const std::atomic<bool>* stop = nullptr;  ///< opening throws Stopped soon after it is set
+  bool skipDamaged = false;                 ///< read what is sound of a damaged file; what is missing counts as skipped
 };
 
 /// Every scan that `inputs` names (files, folders, `synthetic:NAME?points=1e6&seed=1`), in a fixed order

@@ -93,6 +93,7 @@ std::unique_ptr<PointSource> openText(const std::string& path, const SourceOptio
   table.comments = true;
   table.countLines = format.countLines;
   table.skipDamaged = options.skipDamaged;
+  table.stop = options.stop;
   table.begin = format.headerBytes;
   table.end = bytes->size();
   table.firstLine = format.firstLine;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::uint64_t kPartBytes = std::uint64_t{32} << 20;
 constexpr unsigned kMostThreads = 16;
+constexpr std::uint64_t kStopLines = 4096;       ///< between looks at whether to stop
 constexpr std::size_t kMostCountLines = 100000;  ///< in one part
 
 /// A PTS line that says how many points follow.
@@ -108,6 +109,7 @@ class PartPass {
     std::string_view line;
     while (lines.next(line) && found.fault.empty()) {
       found.lines = lines.count();
+      if (found.lines % kStopLines == 0 && table_.stop != nullptr && *table_.stop) throw Stopped();
       const LineKind kind = lineKind(line, table_);
       if (kind == LineKind::point) point(line, found);
       if (kind == LineKind::countLine) countLine(line, found);

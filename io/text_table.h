@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -33,6 +34,7 @@ struct TextTable {
   std::size_t recordBytes = 0;
   bool comments = false;     ///< lines that start with # or // are none
   bool countLines = false;   ///< lines of a single integer are none (PTS, one before each scan)
+  const std::atomic<bool>* stop = nullptr;
   bool skipDamaged = false;  ///< lines that cannot be read are left out instead of refused
   std::uint64_t begin = 0;   ///< bytes of the file, both at line starts
   std::uint64_t end = 0;

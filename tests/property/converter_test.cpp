@@ -276,7 +276,7 @@ TEST(Converter, AnErrorLeavesNeitherStoreNorRemains) {
   EXPECT_TRUE(fs::is_empty(folder.path()));
 }
 
-TEST(Converter, StopsWhenAskedAndLeavesNothing) {
+TEST(Converter, StopsWhenAskedAndLeavesNothingUnderTheFinalName) {
   const test::TempFolder folder;
   ConvertOptions options;
   options.inputs = {"synthetic:city?points=1e8"};
@@ -284,8 +284,13 @@ TEST(Converter, StopsWhenAskedAndLeavesNothing) {
   std::atomic<bool> stop{true};
   ConvertControl control;
   control.stop = &stop;
-  EXPECT_THROW(convert(options, control), Error);
-  EXPECT_TRUE(fs::is_empty(folder.path()));
+  EXPECT_THROW(convert(options, control), Stopped);
+  EXPECT_FALSE(fs::exists(options.output));
+  EXPECT_TRUE(fs::exists(options.output + ".building/journal"));
+  options.inputs = {"synthetic:city?points=1e8&seed=2"};
+  options.resume = true;
+  EXPECT_THROW(convert(options, control), Error);  // other points than those that were begun
+  EXPECT_TRUE(fs::exists(options.output + ".building/journal"));
 }
 
 TEST(Converter, TwoClustersFarApartKeepTheirCoordinates) {
@@ -354,7 +359,7 @@ TEST(BuildFolder, DoesNotReplaceWhatAppearedUnderItsFinalName) {
   const test::TempFolder folder;
   const std::string output = (folder / "a.strata").string();
   {
-    BuildFolder building(output, false);
+    BuildFolder building(output, false, false);
     fs::create_directory(output);
     std::ofstream(output + "/scan.las") << "precious";
     EXPECT_THROW(building.publish(), Error);
@@ -378,7 +383,7 @@ TEST(BuildFolder, DoesNotTakeOverAFolderThatNoConversionMade) {
   const test::TempFolder folder;
   fs::create_directory(folder / "a.strata.building");
   std::ofstream(folder / "a.strata.building" / "notes.txt") << "precious";
-  EXPECT_THROW(BuildFolder((folder / "a.strata").string(), false), Error);
+  EXPECT_THROW(BuildFolder((folder / "a.strata").string(), false, false), Error);
   EXPECT_TRUE(fs::exists(folder / "a.strata.building" / "notes.txt"));
 }
 

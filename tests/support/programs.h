@@ -75,6 +75,12 @@ inline bool mentions(const Finished& finished, const std::string& words) {
   return finished.err.find(words) != std::string::npos;
 }
 
+inline bool sameStores(const std::filesystem::path& a, const std::filesystem::path& b) {
+  for (const char* name : {"hierarchy.bin", "points.bin", "store.json"})
+    if (readWhole(a / name) != readWhole(b / name)) return false;
+  return true;
+}
+
 /// A regular grid of n x n x 1 points, one LAS unit (1 cm) apart times `step`.
 inline std::vector<std::array<std::int32_t, 3>> gridPoints(int n, int step = 10) {
   std::vector<std::array<std::int32_t, 3>> points;

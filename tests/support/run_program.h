@@ -28,7 +28,8 @@ struct Finished {
 
 struct RunOptions {
   bool asNobody = false;          ///< as user and group 65534; only root can ask for it
-  double killAfterSeconds = 0.0;  ///< SIGKILL then; 0 = never
+  double killAfterSeconds = 0.0;  ///< `signal` then; 0 = never
+  int signal = SIGKILL;
 };
 
 inline std::string readWhole(const std::filesystem::path& file) {
@@ -71,7 +72,7 @@ inline Finished runProgram(const std::string& program, const std::vector<std::st
       std::unique_lock lock(mutex);
       std::condition_variable_any ended;
       ended.wait_for(lock, stop, std::chrono::duration<double>(options.killAfterSeconds), [] { return false; });
-      if (!stop.stop_requested()) kill(child, SIGKILL);
+      if (!stop.stop_requested()) kill(child, options.signal);
     });
   int status = 0;
   if (waitpid(child, &status, 0) != child) throw std::runtime_error("lost " + path);

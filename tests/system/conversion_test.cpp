@@ -1,16 +1,10 @@
-// What a conversion as a whole must keep: its memory, its result after a kill, and every input's columns.
+// What a conversion as a whole must keep: its memory and every input's columns.
 #include "tests/support/programs.h"
 
 namespace strata::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool sameStores(const fs::path& a, const fs::path& b) {
-  for (const char* name : {"hierarchy.bin", "points.bin", "store.json"})
-    if (readWhole(a / name) != readWhole(b / name)) return false;
-  return true;
-}
 
 TEST(Conversion, StaysUnderItsMemoryAndPutsPointsAsideInstead) {
   const TempFolder folder;
@@ -27,30 +21,6 @@ TEST(Conversion, OfManyChunksGivesTheSameBytesForAnyNumberOfThreads) {
     mustConvert({"synthetic:city?points=1e6"}, folder / (std::string(threads) + ".strata"),
                 {"--memory", "512M", "--threads", threads});
   EXPECT_TRUE(sameStores(folder / "1.strata", folder / "3.strata"));
-}
-
-TEST(Conversion, KilledAtAnyMomentLeavesNothingUnderTheFinalNameAndResumes) {
-  const TempFolder folder;
-  const std::string scan = "synthetic:plane?points=2e6";
-  mustConvert({scan}, folder / "whole.strata");
-  const fs::path store = folder / "killed.strata";
-  int killed = 0;
-  for (const double seconds : {0.05, 0.2, 0.4, 0.7}) {
-    RunOptions options;
-    options.killAfterSeconds = seconds;
-    const Finished finished = runProgram("strata-convert", {scan, "-o", store.string(), "--resume"}, options);
-    if (finished.exitCode == 0) {
-      fs::remove_all(store);
-      continue;
-    }
-    ++killed;
-    EXPECT_FALSE(fs::exists(store)) << "killed after " << seconds << " s";
-  }
-  EXPECT_GT(killed, 0);
-  mustConvert({scan}, store, {"--resume"});
-  EXPECT_TRUE(sameStores(store, folder / "whole.strata"));
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder.path()))
-    EXPECT_EQ(entry.path().extension(), ".strata") << entry.path() << " was left behind";
 }
 
 TEST(Conversion, TheColumnsThatTheUserNamesAreTaken) {

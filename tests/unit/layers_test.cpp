@@ -29,7 +29,7 @@ const std::map<std::string_view, LayerRule> kRules{
     {"io", {{"core"}, {"POSIX", "LASzip", "PCL", "LZ4", "xxHash", "nlohmann"}}},
     {"lod", {{"core", "io"}, {"POSIX"}}},
     {"render", {{"core"}, {"POSIX", "GL", "EGL", "OSMesa", "TBB", "Highway"}}},
-    {"converter", {{"core", "io"}, {"POSIX", "TBB", "Eigen", "LZ4", "CLI11", "nlohmann"}}},
+    {"converter", {{"core", "io"}, {"POSIX", "TBB", "Eigen", "xxHash", "CLI11", "nlohmann"}}},
     {"viewer", {{"core", "io", "lod", "render"}, {"POSIX", "GL", "GLFW", "ImGui", "CLI11", "nlohmann"}}},
 };
 

@@ -1,0 +1,10 @@
+// The kill test at length.
+#include "tests/support/interrupted.h"
+
+namespace strata::test {
+namespace {
+
+TEST(ManyKills, ResumeToTheSameBytes) { expectKillsResume(200); }
+
+}  // namespace
+}  // namespace strata::test

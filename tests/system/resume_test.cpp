@@ -1,0 +1,166 @@
+// A conversion that ends before its time: killed, stopped, out of disk, with other inputs or options the next time.
+#include <random>
+
+#include "tests/support/interrupted.h"
+
+namespace strata::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Resume, GivesTheSameBytesWhereverTheConversionWasKilled) { expectKillsResume(25); }
+
+TEST(Resume, EndsThoughKilledAgainAndAgain) {
+  const TempFolder folder;
+  const fs::path whole = folder / "whole.strata", store = folder / "killed.strata";
+  const Finished undisturbed = runProgram("strata-convert", convertWords(kScan, whole, {}));
+  double seconds = 0.1 * undisturbed.seconds;
+  int killed = 0;
+  while (interrupt(kScan, store, seconds, {"--resume"}, SIGKILL).exitCode != 0) {
+    ASSERT_LT(++killed, 100);
+    seconds *= 1.1;
+  }
+  EXPECT_GT(killed, 0);
+  EXPECT_TRUE(sameStores(store, whole));
+  expectNothingElse(store);
+}
+
+TEST(Resume, GoesOnAfterCtrlCThatSaysHow) {
+  const TempFolder folder;
+  const fs::path whole = folder / "whole.strata", store = folder / "stopped 'n' cut.strata", temp = folder / "temp";
+  fs::create_directory(temp);
+  const Words options{"--temp", temp.string()};
+  const Finished undisturbed = runProgram("strata-convert", convertWords(kScan, whole, options));
+  EXPECT_TRUE(fs::is_empty(temp));
+  int stopped = 0;
+  for (const double share : {0.2, 0.4, 0.6, 0.8}) {
+    const Finished finished = interrupt(kScan, store, share * undisturbed.seconds, options, SIGINT);
+    if (finished.exitCode == 0) {
+      fs::remove_all(store);
+      continue;
+    }
+    ++stopped;
+    expectRefused(finished, store);
+    if (!fs::exists(buildingOf(store))) continue;  // before anything was begun
+    const std::size_t at = finished.err.find("go on with: ");
+    ASSERT_NE(at, std::string::npos) << finished.err;
+    const std::string command = finished.err.substr(at + 12);
+    EXPECT_EQ(std::distance(fs::directory_iterator(temp), {}), 1);
+    const Finished last = runProgram("/bin/sh", {"-c", command});
+    ASSERT_EQ(last.exitCode, 0) << last.err << command;
+    EXPECT_TRUE(sameStores(store, whole));
+    EXPECT_TRUE(fs::is_empty(temp));
+    expectNothingElse(store);
+    fs::remove_all(store);
+  }
+  EXPECT_GT(stopped, 0);
+}
+
+TEST(Resume, IsRefusedWithOtherOptionsThatDecideTheBytes) {
+  const TempFolder folder;
+  const fs::path store = folder / "a.strata";
+  leaveInterrupted(kScan, store);
+  const Finished memory =
+      runProgram("strata-convert", {kScan[0], kScan[1], "-o", store.string(), "--memory", "600M", "--resume"});
+  expectRefused(memory, store);
+  EXPECT_TRUE(mentions(memory, "--memory")) << memory.err;
+  const Finished capacity =
+      runProgram("strata-convert", convertWords(kScan, store, {"--resume", "--node-points", "2000"}));
+  expectRefused(capacity, store);
+  EXPECT_TRUE(mentions(capacity, "--node-points")) << capacity.err;
+  const Finished input = runProgram("strata-convert", convertWords({kScan[0]}, store, {"--resume"}));
+  expectRefused(input, store);
+  EXPECT_TRUE(mentions(input, kScan[1])) << input.err;
+  EXPECT_EQ(runProgram("strata-convert", convertWords(kScan, store, {"--resume", "--threads", "1"})).exitCode, 0);
+}
+
+TEST(Resume, NamesTheInputThatChangedOrIsGone) {
+  const TempFolder folder;
+  const fs::path store = folder / "a.strata", scan = folder / "scan.las";
+  LasSpec spec;
+  spec.points = gridPoints(1500);
+  writeLas(scan, spec);
+  const std::string before = readWhole(scan);
+  leaveInterrupted({scan.string()}, store);
+  EXPECT_EQ(readWhole(scan), before);
+  fs::last_write_time(scan, fs::last_write_time(scan) + std::chrono::seconds(1));
+  const Finished touched = runProgram("strata-convert", convertWords({scan.string()}, store, {"--resume"}));
+  expectRefused(touched, store);
+  EXPECT_TRUE(mentions(touched, scan.string())) << touched.err;
+  fs::remove(scan);
+  const Finished gone = runProgram("strata-convert", convertWords({scan.string()}, store, {"--resume"}));
+  expectRefused(gone, store);
+  EXPECT_TRUE(mentions(gone, scan.string())) << gone.err;
+  EXPECT_TRUE(fs::exists(buildingOf(store) / "journal"));  // nothing of it is lost by trying
+}
+
+TEST(Resume, IsOfferedAndForceStartsAgain) {
+  const TempFolder folder;
+  const fs::path store = folder / "a.strata", temp = folder / "temp";
+  fs::create_directory(temp);
+  leaveInterrupted(kScan, store, {"--temp", temp.string()});
+  const Finished plain = runProgram("strata-convert", convertWords(kScan, store, {}));
+  expectRefused(plain, store);
+  EXPECT_TRUE(mentions(plain, "--resume") && mentions(plain, "--force")) << plain.err;
+  const Finished again =
+      runProgram("strata-convert", convertWords({"synthetic:plane?points=1000"}, store, {"--force"}));
+  EXPECT_EQ(again.exitCode, 0) << again.err;
+  EXPECT_TRUE(fs::is_empty(temp));
+  expectNothingElse(store);
+}
+
+TEST(Resume, FindsOutWhatIsDamagedAndRefusesOrDoesItAgain) {
+  const TempFolder folder;
+  const fs::path whole = folder / "whole.strata", store = folder / "a.strata";
+  const Finished undisturbed = runProgram("strata-convert", convertWords(kScan, whole, {}));
+  std::mt19937 random(11);
+  int resumed = 0;
+  for (const char* name : {"journal", "spill", "points.bin"})
+    for (const double share : {0.3, 0.8}) {
+      while (!fs::exists(buildingOf(store) / "journal")) {
+        fs::remove_all(store);
+        interrupt(kScan, store, share * undisturbed.seconds, {}, SIGKILL);
+      }
+      const fs::path file = buildingOf(store) / name;
+      std::string bytes = fs::exists(file) ? readWhole(file) : std::string();
+      for (int i = 0; i < 20 && !bytes.empty(); ++i) bytes[random() % bytes.size()] ^= 0x10;
+      if (!bytes.empty()) writeBytes(file, bytes);
+      const Finished finished = runProgram("strata-convert", convertWords(kScan, store, {"--resume"}));
+      if (finished.exitCode == 0) {
+        ++resumed;
+        EXPECT_TRUE(sameStores(store, whole)) << name;
+      } else {
+        expectRefused(finished, store);
+      }
+      fs::remove_all(store);
+      fs::remove_all(buildingOf(store));
+    }
+  EXPECT_GT(resumed, 0);
+}
+
+TEST(Resume, WithNothingToResumeIsAPlainConversion) {
+  const TempFolder folder;
+  const fs::path store = folder / "a.strata";
+  EXPECT_EQ(runProgram("strata-convert", convertWords({"synthetic:plane?points=1000"}, store, {"--resume"})).exitCode,
+            0);
+  expectNothingElse(store);
+}
+
+TEST(Disk, ThatIsFullEndsTheConversionAndLeavesNothing) {
+  const TempFolder folder;
+  const fs::path store = folder / "a.strata", temp = folder / "temp";
+  fs::create_directory(temp);
+  // Files of at most so many KiB: the temporary points, points.bin and the journal run into it in turn.
+  for (const char* most : {"8000", "1000", "100", "4"}) {
+    std::string command =
+        std::string("trap '' XFSZ; ulimit -f ") + most + "; exec " + programPath("strata-convert").string();
+    for (const std::string& word : convertWords(kScan, store, {"--temp", temp.string()})) command += " '" + word + "'";
+    const Finished finished = runProgram("/bin/bash", {"-c", command});
+    expectRefused(finished, store);
+    EXPECT_TRUE(fs::is_empty(temp)) << most;
+    EXPECT_FALSE(fs::exists(buildingOf(store))) << most;
+  }
+}
+
+}  // namespace
+}  // namespace strata::test
