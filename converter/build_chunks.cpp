@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <span>
 
 #include "converter/chunk_builder.h"
 #include "converter/run_sorter.h"
+#include "converter/slices.h"
 #include "core/error.h"
 
 namespace strata {
@@ -69,25 +71,25 @@ struct Work {
   BuiltChunk built;
 };
 
-std::vector<std::byte> readPoints(const BuildFrame& frame, const Bucket& bucket, const CellGrid& grid,
-                                  const std::vector<Extent>& extents, const Spill& spill,
-                                  const ConvertControl& control) {
+/// Hands the points of a bucket to `see(packed bytes)`, a block at a time.
+template <typename See>
+void readPoints(const BuildFrame& frame, const Bucket& bucket, const CellGrid& grid, const std::vector<Extent>& extents,
+                const Spill& spill, const ConvertControl& control, See&& see) {
   const std::size_t stride = frame.format.stride();
-  std::vector<std::byte> points(bucket.points * stride), scratch;
-  std::byte* to = points.data();
+  std::vector<std::byte> block(RunSorter::kBlockPoints * stride), scratch;
+  std::uint64_t points = 0;
   for (const Extent& extent : extents) {
-    control.checkStop();
     ExtentReader reader(spill, grid, frame.format, extent);
     while (reader.left() > 0) {
+      control.checkStop();
       const std::size_t count = std::min<std::uint64_t>(reader.left(), RunSorter::kBlockPoints);
-      if (static_cast<std::size_t>(to - points.data()) + count * stride > points.size())
-        throw Error(spill.path(), "holds more points of a cell than were counted");
-      reader.read(count, scratch, to);
-      to += count * stride;
+      reader.read(count, scratch, block.data());
+      points += count;
+      if (points > bucket.points) throw Error(spill.path(), "holds more points of a cell than were counted");
+      see(std::span<const std::byte>(block).first(count * stride));
     }
   }
-  if (to != points.data() + points.size()) throw Error(spill.path(), "holds fewer points of a cell than were counted");
-  return points;
+  if (points != bucket.points) throw Error(spill.path(), "holds fewer points of a cell than were counted");
 }
 
 }  // namespace
@@ -157,10 +159,16 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& a
     chunk->extents = walk.next(all.buckets[chunk->index]);
     return chunk;
   };
+  const auto read = [&](const Work& chunk, auto&& see) {
+    const Bucket& bucket = all.buckets[chunk.index];
+    readPoints(frame, bucket, all.sets[bucket.set].grid, chunk.extents, work.spill, control, see);
+  };
   const auto build = [&](std::shared_ptr<Work> chunk) {
     const Bucket& bucket = all.buckets[chunk->index];
-    std::vector<std::byte> points =
-        readPoints(frame, bucket, all.sets[bucket.set].grid, chunk->extents, work.spill, control);
+    if (bucket.sliced) return chunk;  // too large for one piece, and for any order but its own
+    std::vector<std::byte> points;
+    points.reserve(bucket.points * frame.format.stride());
+    read(*chunk, [&](std::span<const std::byte> block) { points.insert(points.end(), block.begin(), block.end()); });
     std::unique_ptr<ChunkScratch> scratch = scratches.lend();
     chunk->built = buildChunk(frame, bucket.cell, std::move(points), *scratch);
     scratches.giveBack(std::move(scratch));
@@ -170,8 +178,14 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& a
     const Bucket& bucket = all.buckets[chunk->index];
     ChunkRecord record;
     record.index = chunk->index;
+    if (bucket.sliced) {
+      SliceBuilder slices(frame, bucket.cell, bucket.points);
+      read(*chunk, [&](std::span<const std::byte> block) { sink.write(slices.add(block)); });
+      chunk->built = {{}, slices.takeTopPoints(), slices.takeTopChildren()};
+    }
     record.top = {bucket.cell, work.spill.put(chunk->built.topPoints), std::move(chunk->built.topChildren)};
-    record.written = sink.writeChunk(std::move(chunk->built.nodes));
+    sink.write(std::move(chunk->built.nodes));
+    record.written = sink.endChunk();
     appendChunk(work.journal, record);
     for (const Extent& extent : chunk->extents) releaser.add(extent);
     tops.push_back(std::move(record.top));

@@ -19,12 +19,13 @@ struct Bucket {
   std::uint64_t points = 0;
   std::size_t set = 0;  ///< index into Distribution::sets
   std::size_t firstCell = 0, endCell = 0;
+  bool sliced = false;  ///< of the deepest level, and above the point limit
 };
 
 /// Result of reading every input (design section 5, stage 2).
 struct Distribution {
   std::deque<RunSet> sets;      ///< the first holds all points; the others what of it had to be split
-  std::vector<Bucket> buckets;  ///< disjoint cells in Morton order, none above the point limit
+  std::vector<Bucket> buckets;  ///< disjoint cells in Morton order, within the point limit but for sliced ones
   Box bounds;                   ///< tight, in grid integers
   std::uint64_t points = 0;
   std::vector<std::uint64_t> sourcePoints;  ///< kept, by source

@@ -85,6 +85,7 @@ NodeSink::NodeSink(const std::string& folder, std::span<const Written> chunks)
   }
   for (const Written& chunk : chunks.first(chunksFound_))
     records_.insert(records_.end(), chunk.records.begin(), chunk.records.end());
+  chunkBegin_ = records_.size();
 }
 
 void NodeSink::flush() {
@@ -95,20 +96,20 @@ void NodeSink::flush() {
 void NodeSink::write(std::vector<BuiltNode> nodes) {
   for (BuiltNode& node : nodes) {
     node.record.offset = bytes();
+    chunkChecksum_ = checksum(node.payload, chunkChecksum_);
     buffer_.insert(buffer_.end(), node.payload.begin(), node.payload.end());
     records_.push_back(node.record);
     if (buffer_.size() >= kBufferBytes) flush();
   }
 }
 
-NodeSink::Written NodeSink::writeChunk(std::vector<BuiltNode> nodes) {
-  Written out;
-  const std::size_t first = records_.size();
-  for (const BuiltNode& node : nodes) out.checksum = checksum(node.payload, out.checksum);
-  write(std::move(nodes));
+NodeSink::Written NodeSink::endChunk() {
   flush();
+  Written out;
   out.end = bytes();
-  out.records.assign(records_.begin() + static_cast<std::ptrdiff_t>(first), records_.end());
+  out.checksum = std::exchange(chunkChecksum_, 0);
+  out.records.assign(records_.begin() + static_cast<std::ptrdiff_t>(chunkBegin_), records_.end());
+  chunkBegin_ = records_.size();
   return out;
 }
 

@@ -27,8 +27,8 @@ class NodeSink {
   std::size_t chunksFound() const { return chunksFound_; }
 
   void write(std::vector<BuiltNode> nodes);
-  /// The same, but everything is handed to the system when it returns.
-  Written writeChunk(std::vector<BuiltNode> nodes);
+  /// Hands everything to the system; returns what was written since the last call.
+  Written endChunk();
   /// Completes points.bin and returns the records linked in breadth-first order.
   Hierarchy finish();
   std::uint64_t bytes() const { return file_->size() + buffer_.size(); }
@@ -40,6 +40,8 @@ class NodeSink {
   std::unique_ptr<OutputFile> file_;
   std::vector<std::byte> buffer_;
   std::vector<NodeRecord> records_;
+  std::size_t chunkBegin_ = 0;       ///< index into records_
+  std::uint64_t chunkChecksum_ = 0;  ///< of what the chunk has so far
 };
 
 }  // namespace strata

@@ -8,12 +8,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <iomanip>
 #include <limits>
 #include <map>
 #include <mutex>
 #include <set>
-#include <sstream>
 
 #include "converter/run_sorter.h"
 #include "core/error.h"
@@ -24,8 +22,6 @@ namespace {
 constexpr std::uint64_t kTaskPoints = std::uint64_t{1} << 19;  // about
 /// A cell that holds this share of its set's points is likely to hold them in a corner again.
 constexpr double kDenseShare = 0.75;
-/// A cell of the deepest level cannot be split; this many bucket limits still fit the memory cap.
-constexpr std::uint64_t kDeepestCellLimits = 3;
 
 /// How a cell is split, as the journal has it.
 struct Split {
@@ -281,7 +277,7 @@ class Splitter {
     const std::size_t first = index << below, end = (index + 1) << below;
     const std::uint64_t points = before[end] - before[first];
     if (points == 0) return;
-    Bucket bucket{{grid.parent.code << (3 * depth) | index}, points, s, first, end};
+    Bucket bucket{{grid.parent.code << (3 * depth) | index}, points, s, first, end, false};
     if (points <= limit_) {
       all_.buckets.push_back(bucket);
     } else if (below > 0) {
@@ -290,24 +286,9 @@ class Splitter {
       emitSet(split->second.second);
     } else {
       if (split != splits_.end()) bucket.cell = NodeKey{split->second.first.parent};
-      emitDeepest(bucket);
+      bucket.sliced = true;
+      all_.buckets.push_back(bucket);
     }
-  }
-
-  /// More points than the limit in a cell of the deepest level.
-  void emitDeepest(const Bucket& bucket) {
-    if (bucket.points > kDeepestCellLimits * limit_) {
-      const Box rootCube{frame_.grid.offset, frame_.grid.offset + frame_.grid.scale * std::ldexp(1.0, frame_.cubeBits)};
-      const Box cell = nodeCube(bucket.cell, rootCube);
-      std::ostringstream place;
-      place << std::setprecision(10) << "around " << cell.centre().x << " " << cell.centre().y << " "
-            << cell.centre().z;
-      throw Error(place.str(), "more points lie in a cell of " + std::to_string(cell.size().x) +
-                                   " m, the smallest there is, than --memory can hold, found " +
-                                   std::to_string(bucket.points) + " (expected at most " +
-                                   std::to_string(kDeepestCellLimits * limit_) + ")");
-    }
-    all_.buckets.push_back(bucket);
   }
 
   Distribution& all_;
