@@ -76,6 +76,7 @@ build_programs
 grep -qxF -- "$name.strata" "$made" 2>/dev/null || printf '%s\n' "$name.strata" >>"$made"
 
 rm -f -- "$out"/{overview,close,detail}.png "$out/report.html"
+[ -d "$store.building" ] && force=(--force)  # what an interrupted run left
 say "converting ${scans[*]}"
 "$bin/strata-convert" "${scans[@]}" -o "$store" ${force[@]+"${force[@]}"}
 say "taking three pictures and flying an orbit around it"
