@@ -1,7 +1,10 @@
 // Streamers under everything at once, for ThreadSanitizer and for deadlocks. Times are not tested.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
+#include <mutex>
 #include <random>
 #include <set>
 #include <thread>
@@ -129,6 +132,40 @@ TEST(StreamerStress, ConstructAndDestroyAHundredTimes) {
     longest = std::max(longest, std::chrono::steady_clock::now() - start);
   }
   RecordProperty("longest_stop_us", static_cast<int>(longest / 1us));
+}
+
+TEST(StreamerStress, StopsAHundredTimesWhileReadsAreBlocked) {
+  struct Gate {
+    std::mutex mutex;
+    std::condition_variable opened;
+    bool open = false;
+    std::atomic<int> waiting{0};
+  };
+  const auto gate = std::make_shared<Gate>();
+  const auto store = makeStore(terrain(), [gate](std::uint64_t) {
+    ++gate->waiting;
+    std::unique_lock lock(gate->mutex);
+    gate->opened.wait(lock, [&] { return gate->open; });
+  });
+  std::mt19937 random(10);
+  std::chrono::steady_clock::duration stopping{};
+  for (int i = 0; i < 100; ++i) {
+    const int waiting = gate->waiting;
+    auto streamer = std::make_unique<Streamer>(store, eightNodes(1 + i % 3));
+    streamer->setView(test::viewOfTerrain(terrain().info, 0.5, 0.3, 60.0));
+    while (gate->waiting == waiting) std::this_thread::yield();
+    const auto start = std::chrono::steady_clock::now();
+    streamer.reset();
+    stopping += std::chrono::steady_clock::now() - start;
+  }
+  EXPECT_LT(stopping / 100, 100ms) << "what each may take, here of their mean: the machine may be busy";
+  EXPECT_GE(readersFinishingLater(), 100u);
+  {
+    const std::lock_guard lock(gate->mutex);
+    gate->open = true;
+  }
+  gate->opened.notify_all();
+  while (readersFinishingLater() > 0) std::this_thread::yield();
 }
 
 TEST(StreamerStress, ASlowDiskWhileFlying) {
