@@ -11,7 +11,7 @@ namespace {
 // All in SVG user units.
 constexpr double kPanelWidth = 360.0, kPanelHeight = 250.0;
 constexpr double kLeft = 52.0, kRight = 12.0, kTop = 30.0, kBottom = 44.0;
-constexpr double kKeyHeight = 34.0;
+constexpr double kKeyRow = 20.0;
 constexpr const char* kColours[] = {"#0b6fb8", "#d1495b", "#3a8f3a", "#e0952b", "#7b52ab", "#4f5d6b", "#17a2a2"};
 
 std::string number(double value) {
@@ -81,6 +81,18 @@ std::string panel(const Chart& chart, const std::vector<std::string>& labels) {
   return svg;
 }
 
+double keyWidth(const std::string& label) { return 44.0 + 7.0 * static_cast<double>(label.size()); }
+
+int keyRows(const std::vector<std::string>& labels, double width) {
+  int count = 1;
+  double x = kLeft;
+  for (const std::string& label : labels) {
+    if (x > kLeft && x + keyWidth(label) > width) x = kLeft, ++count;
+    x += keyWidth(label);
+  }
+  return count;
+}
+
 }  // namespace
 
 void fitYAxis(Chart& chart) {
@@ -109,7 +121,8 @@ std::string svgFigure(const std::vector<Chart>& charts, int columns) {
     for (const ChartLine& curve : chart.lines)
       if (std::find(labels.begin(), labels.end(), curve.label) == labels.end()) labels.push_back(curve.label);
   const int rows = (static_cast<int>(charts.size()) + columns - 1) / columns;
-  const std::string width = number(columns * kPanelWidth), height = number(rows * kPanelHeight + kKeyHeight);
+  const std::string width = number(columns * kPanelWidth);
+  const std::string height = number(rows * kPanelHeight + keyRows(labels, columns * kPanelWidth) * kKeyRow + 8.0);
   std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width + " " + height + "\" width=\"" +
                     width + "\" height=\"" + height +
                     "\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222222\">\n"
@@ -119,13 +132,14 @@ std::string svgFigure(const std::vector<Chart>& charts, int columns) {
     svg += "<g transform=\"translate(" + number(column * kPanelWidth) + " " + number(row * kPanelHeight) + ")\">\n" +
            panel(charts[i], labels) + "</g>\n";
   }
-  double x = kLeft;
-  const double y = rows * kPanelHeight + 14.0;
+  double x = kLeft, y = rows * kPanelHeight + kKeyRow - 6.0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
+    const double wide = keyWidth(labels[i]);
+    if (x > kLeft && x + wide > columns * kPanelWidth) x = kLeft, y += kKeyRow;
     svg += "<rect x=\"" + number(x) + "\" y=\"" + number(y - 5.0) + "\" width=\"18\" height=\"4\" fill=\"" +
            kColours[i % std::size(kColours)] + "\"/>\n";
     svg += text(x + 24.0, y + 2.0, "start", labels[i]);
-    x += 44.0 + 7.0 * static_cast<double>(labels[i].size());
+    x += wide;
   }
   return svg + "</svg>\n";
 }
