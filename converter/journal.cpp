@@ -26,8 +26,8 @@ static_assert(sizeof(Header) == 16);
 constexpr std::array<char, 8> kMagic{'S', 'T', 'R', 'J', 'O', 'U', 'R', '1'};
 
 std::uint64_t sumOf(RecordKind kind, std::uint64_t offset, std::span<const std::byte> payload) {
-  const std::uint64_t seed = offset ^ std::uint64_t{static_cast<std::uint32_t>(kind)} << 56 ^ payload.size() << 40;
-  return checksum(payload, seed);
+  const std::uint64_t place[] = {offset, std::uint64_t{static_cast<std::uint32_t>(kind)}, payload.size()};
+  return checksum(payload, checksum(std::as_bytes(std::span(place))));
 }
 
 /// Bytes that are there, at most as many as asked for.

@@ -46,7 +46,7 @@ TEST(Journal, AFlippedByteIsFoundAndEndsIt) {
   const std::string path = (folder / "journal").string();
   const auto payloads = writeTen(path);
   const std::string bytes = test::readWhole(path);
-  for (std::size_t at = 8; at < bytes.size(); at += 5) {
+  for (std::size_t at = 8; at < bytes.size(); ++at) {
     std::string damaged = bytes;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x20);
     test::writeBytes(path, damaged);
