@@ -13,14 +13,16 @@ constexpr int kPoints = 1'100'000;  // more than twice what one chunk holds at 5
 
 using Triple = std::array<std::int32_t, 3>;
 
-/// Converts in 512M, and expects every record back, whatever the order, and the memory kept.
-void expectComesBack(const LasSpec& spec) {
+/// Converts in 512M, and expects every record back, whatever the order, and the memory kept. `tempShare`: most
+/// temporary disk, in sizes of the input.
+void expectComesBack(const LasSpec& spec, double tempShare = 1.0) {
   const TempFolder folder;
   writeLas(folder / "scan.las", spec);
   const Json result = mustConvert({(folder / "scan.las").string()}, folder / "a.strata", {"--memory", "512M"});
   EXPECT_EQ(result.at("points"), spec.points.size());
   EXPECT_LE(result.at("peak_rss_bytes").get<std::uint64_t>(), std::uint64_t{512} << 20);
-  EXPECT_LE(result.at("temp_peak_bytes").get<std::uint64_t>(), fs::file_size(folder / "scan.las"));
+  EXPECT_LE(result.at("temp_peak_bytes").get<double>(),
+            tempShare * static_cast<double>(fs::file_size(folder / "scan.las")));
   EXPECT_EQ(mustInfo(folder / "a.strata", true).at("bad_nodes"), 0);
   const LasFile back = mustExport(folder / "a.strata", folder / "back.las"), scan = readLas(folder / "scan.las");
   ASSERT_EQ(back.count, scan.count);
@@ -59,10 +61,14 @@ TEST(Limits, AllOnALine) {
 }
 
 TEST(Limits, TwoClustersTenThousandKilometresApart) {
-  expectComesBack(scanOf([](int i, std::mt19937& random) {
+  // Only two cells of the first division hold anything, and while one of them is divided again both of its copies are
+  // on disk; each thread has one.
+  constexpr double kTempShare = 1.5;
+  const LasSpec spec = scanOf([](int i, std::mt19937& random) {
     const std::int32_t from = i % 2 == 0 ? -500'000'000 : 500'000'000;
     return Triple{from + upTo(random, 10'000), upTo(random, 10'000), upTo(random, 10'000)};
-  }));
+  });
+  expectComesBack(spec, kTempShare);
 }
 
 TEST(Limits, PointsOnTheBordersOfCells) {
