@@ -76,12 +76,12 @@ class CodeFile {
 /// The codes of all points: of nodes that lie in one region in the file, of those above the regions in memory.
 class NormalCodes {
  public:
-  NormalCodes(const Hierarchy& hierarchy, const std::vector<NodeKey>& regions, const std::string& folder)
+  NormalCodes(const Hierarchy& hierarchy, const std::vector<NormalRegion>& regions, const std::string& folder)
       : file_(folder), first_(hierarchy.nodes.size() + 1), shared_(hierarchy.nodes.size()) {
     for (std::size_t i = 0; i < hierarchy.nodes.size(); ++i) first_[i + 1] = first_[i] + hierarchy.nodes[i].pointCount;
     std::vector<std::uint64_t> above;
-    for (const NodeKey region : regions)
-      for (std::uint64_t code = region.code >> 3; code > 0; code >>= 3) above.push_back(code);
+    for (const NormalRegion& region : regions)
+      for (std::uint64_t code = region.cell.code >> 3; code > 0; code >>= 3) above.push_back(code);
     std::sort(above.begin(), above.end());
     for (std::size_t i = 0; i < hierarchy.nodes.size(); ++i)
       if (std::binary_search(above.begin(), above.end(), hierarchy.nodes[i].key))
@@ -219,7 +219,7 @@ std::uint64_t addNormals(StoreInfo& info, Hierarchy& hierarchy, const std::strin
       std::clamp<std::uint64_t>(room / kLeastRegionPoints, 1, static_cast<std::uint64_t>(options.threads)));
   const std::uint64_t limit =
       std::clamp(room / static_cast<std::uint64_t>(workers) / 2, kLeastRegionPoints / 2, kMostRegionPoints);
-  const std::vector<NodeKey> regions = normalRegions(hierarchy, limit);
+  const std::vector<NormalRegion> regions = normalRegions(hierarchy, limit);
   const double reach = neighbourReach(store, options, control);
 
   NormalCodes codes(hierarchy, regions, options.tempFolder.empty() ? folderOf(pointsPath) : options.tempFolder);

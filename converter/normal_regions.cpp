@@ -109,12 +109,6 @@ GridBox grown(const GridBox& box, double reach, const glm::dvec3& scale) {
   return out;
 }
 
-bool isStored(const Hierarchy& hierarchy, NodeKey key) {
-  const auto at = std::lower_bound(hierarchy.nodes.begin(), hierarchy.nodes.end(), key.code,
-                                   [](const NodeRecord& record, std::uint64_t code) { return record.key < code; });
-  return at != hierarchy.nodes.end() && at->key == key.code;
-}
-
 bool before(const glm::dvec3& a, const glm::dvec3& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
@@ -129,7 +123,7 @@ glm::dvec3 oriented(const glm::dvec3& normal, const glm::dvec3& position, const 
 
 }  // namespace
 
-std::vector<NodeKey> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit) {
+std::vector<NormalRegion> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit) {
   std::vector<std::uint64_t> below(hierarchy.nodes.size());
   for (std::size_t i = hierarchy.nodes.size(); i-- > 0;) {  // children stand behind their parents
     const NodeRecord& record = hierarchy.nodes[i];
@@ -137,11 +131,11 @@ std::vector<NodeKey> normalRegions(const Hierarchy& hierarchy, std::uint64_t lim
     for (int k = 0; k < std::popcount(record.childMask); ++k)
       below[i] += below[record.firstChild + static_cast<std::size_t>(k)];
   }
-  std::vector<NodeKey> regions;
+  std::vector<NormalRegion> regions;
   const auto split = [&](auto&& self, std::size_t node) -> void {
     const NodeRecord& record = hierarchy.nodes[node];
-    if (below[node] <= limit || record.childMask == 0) {
-      regions.push_back({record.key});
+    if (below[node] <= limit || record.childMask == 0 || record.sliced != 0) {
+      regions.push_back({NodeKey{record.key}, true});
       return;
     }
     std::size_t child = record.firstChild;
@@ -149,7 +143,7 @@ std::vector<NodeKey> normalRegions(const Hierarchy& hierarchy, std::uint64_t lim
       if ((record.childMask >> octant & 1) != 0)
         self(self, child++);
       else
-        regions.push_back(NodeKey{record.key}.child(octant));  // points of the nodes above may lie there
+        regions.push_back({NodeKey{record.key}.child(octant), false});  // points of the nodes above may lie there
   };
   split(split, 0);
   return regions;
@@ -176,11 +170,11 @@ double neighbourReach(const Store& store, const ConvertOptions& options, const C
   return kReachInCells * std::ldexp(std::max({scale.x, scale.y, scale.z}), shift);
 }
 
-RegionNormals estimateRegion(const Store& store, NodeKey region, double reach, std::uint64_t mostAround,
+RegionNormals estimateRegion(const Store& store, const NormalRegion& region, double reach, std::uint64_t mostAround,
                              const Viewpoint& viewpoint) {
-  const GridBox box = boxOf(region, store.info().cubeBits);
+  const GridBox box = boxOf(region.cell, store.info().cubeBits);
   Gathered all;
-  if (!isStored(store.hierarchy(), region)) {  // most such cells are empty, and then nobody asks what is around
+  if (!region.hasNode) {  // where it is empty, nobody asks what is around
     Gatherer(store, box, box, mostAround).gather(all);
     if (all.own.empty()) return {};
     all = {};

@@ -13,9 +13,14 @@ struct RegionPoint {
   std::uint32_t node, point;
 };
 
-/// Cells of the octree that cover every point of the store once, none with more than `limit` points below it where
-/// that can be had.
-std::vector<NodeKey> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit);
+/// A cell of the octree.
+struct NormalRegion {
+  NodeKey cell;
+  bool hasNode = false;  ///< else only points of the nodes above it lie there, and mostly none
+};
+
+/// Cells that cover every point of the store once, none with more than `limit` points below it where that can be had.
+std::vector<NormalRegion> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit);
 
 /// How far a neighbour may be, metres: so that typical points have far more than they need within it, and the same
 /// however the store is cut up. Reads every node.
@@ -28,7 +33,7 @@ struct RegionNormals {
 };
 /// `mostAround` limits the points around the region that are looked at: where there are more, `reach` is halved until
 /// they fit.
-RegionNormals estimateRegion(const Store& store, NodeKey region, double reach, std::uint64_t mostAround,
+RegionNormals estimateRegion(const Store& store, const NormalRegion& region, double reach, std::uint64_t mostAround,
                              const Viewpoint& viewpoint);
 
 }  // namespace strata

@@ -163,8 +163,8 @@ TEST(Normals, DoNotDependOnHowTheScanIsCutIntoRegions) {
   const double reach = neighbourReach(store, options, ConvertControl{});
   std::map<std::pair<std::uint32_t, std::uint32_t>, Octahedral> whole, parts;
   const auto estimate = [&](std::uint64_t limit, auto& out) {
-    const std::vector<NodeKey> regions = normalRegions(store.hierarchy(), limit);
-    for (const NodeKey region : regions) {
+    const std::vector<NormalRegion> regions = normalRegions(store.hierarchy(), limit);
+    for (const NormalRegion& region : regions) {
       const RegionNormals one = estimateRegion(store, region, reach, 1u << 30, std::nullopt);
       for (std::size_t i = 0; i < one.points.size(); ++i)
         EXPECT_TRUE(out.insert({{one.points[i].node, one.points[i].point}, one.normals[i]}).second);
