@@ -8,7 +8,8 @@
 
 namespace strata {
 
-/// Consecutive points of one node with their own bounds; one work-group draws one batch (Schütz 2022, 3.1).
+/// Consecutive points of one node and a box around them; one work-group draws one batch (Schütz 2022, 3.1). Batches out
+/// of a store have their node's box: each holds whole passes over the node.
 struct Batch {
   static constexpr std::uint32_t kMaxPoints = 10240;
 

@@ -1,10 +1,16 @@
 // What streaming costs and saves, as tables of docs/benchmarks.md:
-//   streaming_bench occlusion STORE VIEWS.json...   Kanzok 2015, Table 3: each view with and without occlusion
-//   streaming_bench slow STORE PATH.json            frame times of a flight over disks that are instant, slow and
-//   broken streaming_bench ahead STORE PATH.json           the same flight with and without looking ahead, from a slow
-//   disk streaming_bench planes STORE PATH.json          bytes read by need and in full streaming_bench loaders STORE
-//   the loader's speed against plain reading streaming_bench open [NODES]                    opening a store of so many
-//   nodes
+//
+// streaming_bench occlusion STORE VIEWS.json...   Kanzok 2015, Table 3: each view with and without occlusion
+//
+// streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken
+//
+// streaming_bench ahead STORE PATH.json    the same flight with and without looking ahead, from a slow disk
+//
+// streaming_bench planes STORE PATH.json   bytes read by need and in full
+//
+// streaming_bench loaders STORE            the loader's speed against plain reading
+//
+// streaming_bench open [NODES]             opening a store of so many nodes
 #include <fcntl.h>
 #include <unistd.h>
 
