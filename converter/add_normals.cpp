@@ -21,6 +21,7 @@
 #include "io/node_codec.h"
 #include "io/output_file.h"
 #include "io/pcd_source.h"
+#include "io/positional_io.h"
 #include "io/store_files.h"
 
 namespace strata {
@@ -46,29 +47,16 @@ class CodeFile {
   CodeFile(const CodeFile&) = delete;
   CodeFile& operator=(const CodeFile&) = delete;
 
-  void write(std::uint64_t firstPoint, std::span<const Octahedral> codes) { transfer<false>(firstPoint, codes); }
-  void read(std::uint64_t firstPoint, std::span<Octahedral> codes) const { transfer<true>(firstPoint, codes); }
-
- private:
-  template <bool kReading, class Codes>
-  void transfer(std::uint64_t firstPoint, Codes codes) const {
-    auto bytes = std::span(reinterpret_cast<std::conditional_t<kReading, char, const char>*>(codes.data()),
-                           codes.size() * sizeof(Octahedral));
-    auto offset = static_cast<off_t>(firstPoint * sizeof(Octahedral));
-    while (!bytes.empty()) {
-      ssize_t moved;
-      if constexpr (kReading)
-        moved = ::pread(descriptor_, bytes.data(), bytes.size(), offset);
-      else
-        moved = ::pwrite(descriptor_, bytes.data(), bytes.size(), offset);
-      if (moved < 0 && errno == EINTR) continue;
-      if (moved < 0) throw posixError(folder_, "temporary normals", errno);
-      if (moved == 0) throw Error(folder_, "temporary normals end early");
-      bytes = bytes.subspan(static_cast<std::size_t>(moved));
-      offset += moved;
-    }
+  void write(std::uint64_t firstPoint, std::span<const Octahedral> codes) {
+    writeAt(descriptor_, folder_, firstPoint * sizeof(Octahedral), std::as_bytes(codes), "temporary normals");
+  }
+  void read(std::uint64_t firstPoint, std::span<Octahedral> codes) const {
+    const std::span<std::byte> bytes = std::as_writable_bytes(codes);
+    if (readAt(descriptor_, folder_, firstPoint * sizeof(Octahedral), bytes, "temporary normals") < bytes.size())
+      throw Error(folder_, "temporary normals end early");
   }
 
+ private:
   const std::string folder_;
   int descriptor_;
 };

@@ -11,6 +11,7 @@
 
 #include "core/error.h"
 #include "io/checksum.h"
+#include "io/positional_io.h"
 
 namespace strata {
 namespace {
@@ -30,47 +31,23 @@ std::uint64_t sumOf(RecordKind kind, std::uint64_t offset, std::span<const std::
   return checksum(payload, checksum(std::as_bytes(std::span(place))));
 }
 
-/// Bytes that are there, at most as many as asked for.
-std::size_t readSome(int descriptor, const std::string& path, std::uint64_t offset, std::span<std::byte> bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got =
-        ::pread(descriptor, bytes.data() + done, bytes.size() - done, static_cast<off_t>(offset + done));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw posixError(path, "reading", errno);
-    if (got == 0) break;
-    done += static_cast<std::size_t>(got);
-  }
-  return done;
-}
-
-void writeAll(int descriptor, const std::string& path, std::uint64_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw posixError(path, "writing", errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
-  }
-}
-
 }  // namespace
 
 Journal::Journal(std::string path) : path_(std::move(path)) {
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (descriptor_ < 0) throw posixError(path_, "creating", errno);
   std::array<char, 8> magic{};
-  readSome(descriptor_, path_, 0, std::as_writable_bytes(std::span(magic)));
+  readAt(descriptor_, path_, 0, std::as_writable_bytes(std::span(magic)));
   end_ = kMagic.size();
   const off_t fileBytes = ::lseek(descriptor_, 0, SEEK_END);
   if (magic == kMagic) {
     Header header{};
     std::vector<std::byte> payload;
-    while (readSome(descriptor_, path_, end_, std::as_writable_bytes(std::span(&header, 1))) == sizeof header) {
+    while (readAt(descriptor_, path_, end_, std::as_writable_bytes(std::span(&header, 1))) == sizeof header) {
       const std::uint64_t start = end_ + sizeof header;
       if (start + header.bytes > static_cast<std::uint64_t>(fileBytes)) break;
       payload.resize(header.bytes);
-      if (readSome(descriptor_, path_, start, payload) != payload.size() ||
+      if (readAt(descriptor_, path_, start, payload) != payload.size() ||
           sumOf(header.kind, start, payload) != header.checksum)
         break;
       found_.push_back({header.kind, start, header.bytes});
@@ -87,14 +64,14 @@ std::uint64_t Journal::append(RecordKind kind, std::span<const std::byte> payloa
   const std::lock_guard lock(mutex_);
   const std::uint64_t start = end_ + sizeof(Header);
   const Header header{kind, static_cast<std::uint32_t>(payload.size()), sumOf(kind, start, payload)};
-  writeAll(descriptor_, path_, start, payload);
-  writeAll(descriptor_, path_, end_, std::as_bytes(std::span(&header, 1)));
+  writeAt(descriptor_, path_, start, payload);
+  writeAt(descriptor_, path_, end_, std::as_bytes(std::span(&header, 1)));
   end_ = start + payload.size();
   return start;
 }
 
 void Journal::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-  if (readSome(descriptor_, path_, offset, bytes) != bytes.size()) throw Error(path_, "ends early");
+  if (readAt(descriptor_, path_, offset, bytes) != bytes.size()) throw Error(path_, "ends early");
 }
 
 std::vector<std::byte> Journal::payload(const Place& place) const {
@@ -108,7 +85,7 @@ void Journal::rewind(std::uint64_t end) {
   while (!found_.empty() && found_.back().offset > end) found_.pop_back();
   end_ = end;
   if (::ftruncate(descriptor_, static_cast<off_t>(end_)) != 0) throw posixError(path_, "truncating", errno);
-  writeAll(descriptor_, path_, 0, std::as_bytes(std::span(kMagic)));
+  writeAt(descriptor_, path_, 0, std::as_bytes(std::span(kMagic)));
 }
 
 std::uint64_t Journal::bytes() const {

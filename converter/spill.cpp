@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/checksum.h"
+#include "io/positional_io.h"
 
 namespace strata {
 namespace {
@@ -43,14 +44,7 @@ void Spill::discard() {
 
 std::uint64_t Spill::append(std::span<const std::byte> bytes) {
   const std::uint64_t start = end_.fetch_add(pageUp(bytes.size()));
-  std::uint64_t offset = start;
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw posixError(path_, "writing temporary points", errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
-  }
+  writeAt(descriptor_, path_, start, bytes, "writing temporary points");
   notePeak();
   return start;
 }
@@ -64,14 +58,8 @@ void Spill::notePeak() {
 }
 
 void Spill::read(std::uint64_t offset, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw posixError(path_, "reading temporary points", errno);
-    if (got == 0) throw Error(path_, "temporary points end early");
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    offset += static_cast<std::uint64_t>(got);
-  }
+  if (readAt(descriptor_, path_, offset, bytes, "reading temporary points") < bytes.size())
+    throw Error(path_, "temporary points end early");
 }
 
 Spill::Handle Spill::put(std::span<const std::byte> bytes) { return {append(bytes), bytes.size(), checksum(bytes)}; }

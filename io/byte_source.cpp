@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/positional_io.h"
 
 namespace strata {
 namespace {
@@ -32,14 +33,8 @@ class File final : public ByteSource {
   const std::string& name() const override { return path_; }
 
   void read(std::uint64_t offset, std::span<std::byte> out) const override {
-    while (!out.empty()) {
-      const ssize_t got = ::pread(descriptor_, out.data(), out.size(), static_cast<off_t>(offset));
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) throw posixError(path_, "reading", errno);
-      if (got == 0) throw Error(path_, "truncated read at byte " + std::to_string(offset));
-      out = out.subspan(static_cast<std::size_t>(got));
-      offset += static_cast<std::uint64_t>(got);
-    }
+    const std::size_t got = readAt(descriptor_, path_, offset, out);
+    if (got < out.size()) throw Error(path_, "truncated read at byte " + std::to_string(offset + got));
   }
 
  private:

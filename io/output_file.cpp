@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "io/positional_io.h"
 
 namespace strata {
 
@@ -39,24 +40,11 @@ void OutputFile::append(std::span<const std::byte> bytes) {
 }
 
 void OutputFile::readAt(std::uint64_t offset, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) throw posixError(path_, "reading", errno);
-    if (got == 0) throw Error(path_, "ends early");
-    bytes = bytes.subspan(static_cast<std::size_t>(got));
-    offset += static_cast<std::uint64_t>(got);
-  }
+  if (strata::readAt(descriptor_, path_, offset, bytes) < bytes.size()) throw Error(path_, "ends early");
 }
 
 void OutputFile::writeAt(std::uint64_t offset, std::span<const std::byte> bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) throw posixError(path_, "writing", errno);
-    bytes = bytes.subspan(static_cast<std::size_t>(written));
-    offset += static_cast<std::uint64_t>(written);
-  }
+  strata::writeAt(descriptor_, path_, offset, bytes);
 }
 
 void OutputFile::finish() {
