@@ -3,49 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <limits>
 
 #include "core/error.h"
+#include "io/field_map.h"
 #include "io/node_codec.h"
 
 namespace strata {
 namespace {
 
 constexpr int kMostDigits = 9;
-
-template <class T>
-double valueOf(const std::byte* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
-}
-
-double scalarValue(ScalarType type, const std::byte* bytes) {
-  switch (type) {
-    case ScalarType::u8:
-      return valueOf<std::uint8_t>(bytes);
-    case ScalarType::i8:
-      return valueOf<std::int8_t>(bytes);
-    case ScalarType::u16:
-      return valueOf<std::uint16_t>(bytes);
-    case ScalarType::i16:
-      return valueOf<std::int16_t>(bytes);
-    case ScalarType::u32:
-      return valueOf<std::uint32_t>(bytes);
-    case ScalarType::i32:
-      return valueOf<std::int32_t>(bytes);
-    case ScalarType::u64:
-      return valueOf<std::uint64_t>(bytes);
-    case ScalarType::i64:
-      return valueOf<std::int64_t>(bytes);
-    case ScalarType::f32:
-      return valueOf<float>(bytes);
-    case ScalarType::f64:
-      return valueOf<double>(bytes);
-  }
-  return 0.0;
-}
 
 std::string shortNumber(double value) {
   char text[40];
@@ -101,8 +68,9 @@ std::string gridNumber(double value, double step) {
 std::string attributeText(const Attribute& attribute, const std::byte* value) {
   std::string text;
   for (std::uint16_t c = 0; c < attribute.components; ++c) {
-    const double stored = scalarValue(attribute.type, value + c * scalarBytes(attribute.type));
-    text += (c == 0 ? "" : " ") + shortNumber(stored * attribute.scale + attribute.offset);
+    const double stored = loadScalar(value + c * scalarBytes(attribute.type), attribute.type);
+    if (c > 0) text.push_back(' ');
+    text += shortNumber(stored * attribute.scale + attribute.offset);
   }
   return text;
 }
