@@ -1,14 +1,15 @@
 #include "io/store.h"
 
-#include <xxhash.h>
-
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <utility>
 
 #include "core/error.h"
+#include "io/checksum.h"
 #include "io/store_files.h"
 
 namespace strata {
@@ -36,7 +37,8 @@ HierarchyHeader readHierarchyHeader(const ByteSource& file) {
   if (std::memcmp(header.magic, kHierarchyMagic, sizeof header.magic) != 0)
     throw Error(file.name(), "is not a Strata hierarchy");
   checkVersion(file.name(), header.version);
-  if (header.headerChecksum != XXH3_64bits(&header, offsetof(HierarchyHeader, headerChecksum)))
+  if (header.headerChecksum !=
+      checksum(std::as_bytes(std::span(&header, 1)).first(offsetof(HierarchyHeader, headerChecksum))))
     throw Error(file.name(), "header checksum mismatch");
   if (header.recordBytes != sizeof(NodeRecord))
     throw Error(file.name(), "record size, found " + std::to_string(header.recordBytes) + " (expected " +
@@ -52,7 +54,7 @@ Hierarchy readHierarchy(const std::string& folder, const StoreInfo& info, const 
                         std::uint64_t pointsBytes) {
   const std::unique_ptr<ByteSource> file = openFile(folder + "/" + kHierarchyFile);
   const HierarchyHeader header = readHierarchyHeader(*file);
-  if (header.infoChecksum != XXH3_64bits(json.data(), json.size()))
+  if (header.infoChecksum != checksum(std::as_bytes(std::span(json))))
     throw Error(folder + "/" + kInfoFile, "checksum mismatch (changed after the conversion)");
   if (header.pointsBytes != pointsBytes)
     throw Error(folder + "/" + kPointsFile, "file size, found " + std::to_string(pointsBytes) + " (expected " +
@@ -60,7 +62,7 @@ Hierarchy readHierarchy(const std::string& folder, const StoreInfo& info, const 
   Hierarchy hierarchy;
   hierarchy.nodes.resize(header.nodeCount);
   file->read(sizeof header, std::as_writable_bytes(std::span(hierarchy.nodes)));
-  if (header.recordsChecksum != XXH3_64bits(hierarchy.nodes.data(), hierarchy.nodes.size() * sizeof(NodeRecord)))
+  if (header.recordsChecksum != checksum(std::as_bytes(std::span(hierarchy.nodes))))
     throw Error(file->name(), "records checksum mismatch");
   if (header.nodeCount != info.nodes)
     throw Error(file->name(), "node count, found " + std::to_string(header.nodeCount) + " (expected " +

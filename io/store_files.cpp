@@ -1,11 +1,10 @@
 #include "io/store_files.h"
 
-#include <xxhash.h>
-
 #include <cstddef>
 #include <cstring>
 #include <span>
 
+#include "io/checksum.h"
 #include "io/output_file.h"
 
 namespace strata {
@@ -30,9 +29,10 @@ void writeStoreFiles(const std::string& folder, const StoreInfo& info, const Hie
   header.recordBytes = sizeof(NodeRecord);
   header.nodeCount = hierarchy.nodes.size();
   header.pointsBytes = pointsBytes;
-  header.recordsChecksum = XXH3_64bits(hierarchy.nodes.data(), hierarchy.nodes.size() * sizeof(NodeRecord));
-  header.infoChecksum = XXH3_64bits(json.data(), json.size());
-  header.headerChecksum = XXH3_64bits(&header, offsetof(HierarchyHeader, headerChecksum));
+  header.recordsChecksum = checksum(std::as_bytes(std::span(hierarchy.nodes)));
+  header.infoChecksum = checksum(std::as_bytes(std::span(json)));
+  header.headerChecksum =
+      checksum(std::as_bytes(std::span(&header, 1)).first(offsetof(HierarchyHeader, headerChecksum)));
   OutputFile records(folder + "/" + kHierarchyFile);
   records.append(std::as_bytes(std::span(&header, 1)));
   records.append(std::as_bytes(std::span(hierarchy.nodes)));
