@@ -1,8 +1,8 @@
-#include <cstdio>
 #include <exception>
 #include <iostream>
 
 #include "core/error.h"
+#include "core/program.h"
 #include "viewer/bench_options.h"
 #include "viewer/bench_run.h"
 #include "viewer/compare.h"
@@ -56,7 +56,6 @@ int main(int argc, char** argv) {
   try {
     return strata::runProgram(argc, argv);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return dynamic_cast<const strata::UsageError*>(&error) != nullptr ? 2 : 1;
+    return strata::reportFailure(error);
   }
 }

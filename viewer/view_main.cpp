@@ -1,7 +1,6 @@
-#include <cstdio>
 #include <exception>
 
-#include "core/error.h"
+#include "core/program.h"
 #include "viewer/viewer_app.h"
 
 int main(int argc, char** argv) {
@@ -10,7 +9,6 @@ int main(int argc, char** argv) {
     if (options) strata::runViewer(*options);
     return 0;
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "error: %s\n", error.what());
-    return dynamic_cast<const strata::UsageError*>(&error) != nullptr ? 2 : 1;
+    return strata::reportFailure(error);
   }
 }
