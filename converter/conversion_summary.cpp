@@ -18,8 +18,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostPlaneLines = 8;  // the smallest planes share the last one
 
-double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
-
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
 [[gnu::format(printf, 2, 3)]] void addLine(std::string& text, const char* format, ...) {
@@ -79,7 +77,7 @@ RunCost runCost() {
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   RunCost cost;
-  cost.cpuSeconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  cost.cpuSeconds = cpuSeconds();
   cost.peakMemoryBytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
   return cost;
 }

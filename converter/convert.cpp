@@ -53,16 +53,6 @@ std::uint64_t chunkPointLimit(const ConvertOptions& options, const PackedFormat&
   return std::min(kMostChunkPoints, (options.memoryBytes - kProgramBytes - growing) / perPoint);
 }
 
-/// CPU time of the process so far, all threads.
-double cpuSeconds() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 /// Times one stage after the other.
 class StageClock {
  public:
@@ -371,6 +361,15 @@ ConvertOptions completed(const ConvertOptions& asked) {
 }
 
 }  // namespace
+
+double cpuSeconds() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
 
 int threadsOf(const ConvertOptions& options) {
   return options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -28,6 +28,9 @@ struct ConvertOptions {
   SourceOptions source;
 };
 
+/// CPU time of the process so far, all threads.
+double cpuSeconds();
+
 /// How many threads the options ask for: 0 means all cores.
 int threadsOf(const ConvertOptions& options);
 
