@@ -63,12 +63,7 @@ class Merger {
   /// The own points of all `nodes`, one after the other, in `columns`.
   LocalPoints localPoints(const CellFrame& cell, std::span<const OpenNode> nodes,
                           std::vector<std::int32_t> (&columns)[3]) const {
-    for (const OpenNode& node : nodes)
-      for (std::size_t at = 0; at < node.points.size(); at += stride_) {
-        std::int64_t grid[3];
-        frame_.format.getPosition(node.points.data() + at, grid);
-        for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
-      }
+    for (const OpenNode& node : nodes) appendLocal(frame_, cell, node.points, stride_, columns);
     return {{columns[0], columns[1], columns[2]}, cell.step};
   }
 

@@ -45,6 +45,15 @@ CellFrame::CellFrame(const BuildFrame& frame, NodeKey cell) {
   step = frame.info.grid.scale * static_cast<double>(std::int64_t{1} << shift);
 }
 
+void appendLocal(const BuildFrame& frame, const CellFrame& cell, std::span<const std::byte> records, std::size_t stride,
+                 std::vector<std::int32_t> (&columns)[3]) {
+  for (std::size_t at = 0; at < records.size(); at += stride) {
+    std::int64_t grid[3];
+    frame.format.getPosition(records.data() + at, grid);
+    for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
+  }
+}
+
 void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
             NodePoints& out) {
   constexpr std::size_t kAhead = 12;  // records are far apart

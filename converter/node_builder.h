@@ -56,6 +56,10 @@ struct FinishedNode {
   SubtreeShape shape;
 };
 
+/// Appends the positions of packed records, which stand `stride` bytes apart, to `columns`, in the cell's integers.
+void appendLocal(const BuildFrame& frame, const CellFrame& cell, std::span<const std::byte> records, std::size_t stride,
+                 std::vector<std::int32_t> (&columns)[3]);
+
 /// Replaces `out` by copies of packed records, `which` of them in this order. They stand `stride` bytes apart.
 void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
             NodePoints& out);

@@ -50,11 +50,7 @@ BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
   const CellFrame cell(frame_, cell_);
   const std::size_t stride = frame_.format.stride();
   std::vector<std::int32_t> columns[3];
-  for (std::size_t at = 0; at < packed.size(); at += stride) {
-    std::int64_t grid[3];
-    frame_.format.getPosition(packed.data() + at, grid);
-    for (std::size_t axis = 0; axis < 3; ++axis) columns[axis].push_back(cell.local(grid[axis]));
-  }
+  appendLocal(frame_, cell, packed, stride, columns);
   const LevelOrder levels =
       sampleNode(frame_.sampling, {{columns[0], columns[1], columns[2]}, cell.step}, LevelOrder::kAll, scratch_);
   Moments moments = cell.world(levels.moments);
