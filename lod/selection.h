@@ -17,7 +17,7 @@ struct SelectionOptions {
 
   static constexpr std::uint64_t kMaxPointBudget = 0xfffffffeu;  ///< point ids of a frame have 32 bits
 
-  OcclusionOptions occlusion;  ///< how the streamer fills the coarse depth
+  OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
 
   bool operator==(const SelectionOptions&) const = default;
 };
