@@ -106,7 +106,8 @@ class ChunkBuilder {
     std::vector<std::byte> packed(kMost * stride);
     for (; end - begin > kMost; begin += kMost) {
       for (std::size_t i = 0; i < kMost; ++i)
-        std::memcpy(packed.data() + i * stride, scratch_.records.data() + scratch_.columns[side].record[begin + i] * stride, stride);
+        std::memcpy(packed.data() + i * stride,
+                    scratch_.records.data() + scratch_.columns[side].record[begin + i] * stride, stride);
       for (BuiltNode& slice : builder.add(packed)) own.slices.push_back(std::move(slice));
     }
     own.sliceShape = builder.takeTopChildren();

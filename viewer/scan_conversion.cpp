@@ -84,7 +84,8 @@ bool convertOne(const ViewerOptions& options, const std::string& scan, const std
 
 ScanConversion::ScanConversion(const std::string& scan, const std::string& store) {
   const std::string converter = converterPath();
-  std::vector<const char*> arguments{"strata-convert", scan.c_str(), "-o", store.c_str(), "--resume", "--json", nullptr};
+  std::vector<const char*> arguments{"strata-convert", scan.c_str(), "-o",   store.c_str(),
+                                     "--resume",       "--json",     nullptr};
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) throw posixError(converter, "starting", errno);
   posix_spawn_file_actions_t actions;

@@ -244,7 +244,8 @@ void coverage(const std::string& out, const std::vector<std::string>& scans) {
     const std::vector<MeanPicture> references = picturesOfAllPoints(pictures.store(), views);
     for (std::size_t v = 0; v < views.size(); ++v) {
       ChartLine line{scans[scan] + " " + kViewNames[v], {}, {}};
-      for (const double density : {0.25, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.4, 2.8, 3.4, 4.0}) {
+      for (const double density :
+           {0.25, 0.35, 0.5, 0.7, 0.85, 1.0, 1.2, 1.4, 1.5, 1.6, 1.7, 1.8, 2.0, 2.4, 2.8, 3.4, 4.0}) {
         SelectionOptions options;
         options.pointBudget = SelectionOptions::kMaxPointBudget;
         options.pointsPerPixel = density;
