@@ -27,14 +27,16 @@ enum class Shading : std::uint8_t {
   highQuality  ///< ... the mean colour of its points at most kBlendDepth behind that (Schütz, Kerbl, Wimmer 2021)
 };
 
-/// What of the scan is drawn, in world coordinates; everything where both are empty. At most kMost of each.
+/// What of the scan is drawn, in world coordinates; everything where all are empty. At most kMost planes, and as many
+/// boxes and cutouts together; what is beyond that is not looked at.
 struct Clip {
   static constexpr std::size_t kMost = 4;
 
   std::vector<Box> boxes;          ///< where there are any, only points in one of them
+  std::vector<Box> cutouts;        ///< only points in none of these
   std::vector<glm::dvec4> planes;  ///< only points with dot(xyz, p) + w >= 0, for all of them
 
-  bool empty() const { return boxes.empty() && planes.empty(); }
+  bool empty() const { return boxes.empty() && cutouts.empty() && planes.empty(); }
 };
 
 /// Fewer nodes where nobody looks (Schütz 2022, 3.6): a node is left out whose box is seen smaller than a threshold,

@@ -113,20 +113,28 @@ Side sideOf(const Planes& planes, const glm::dvec3& lo, const glm::dvec3& hi) {
 struct EyeClip {
   EyeClip(const Clip& clip, const glm::dvec3& eye) {
     for (const Box& box : clip.boxes) boxes.push_back({box.min - eye, box.max - eye});
+    for (const Box& box : clip.cutouts) cutouts.push_back({box.min - eye, box.max - eye});
     for (const glm::dvec4& plane : clip.planes)
       planes.emplace_back(glm::dvec3(plane), glm::dot(plane, glm::dvec4(eye, 1.0)));
   }
   Side side(const glm::dvec3& lo, const glm::dvec3& hi) const {
     Side inBoxes = boxes.empty() ? Side::inside : Side::outside;
-    for (const Box& box : boxes) {
-      if (box.contains(lo) && box.contains(hi)) inBoxes = Side::inside;
-      const bool apart = glm::any(glm::lessThan(hi, box.min)) || glm::any(glm::greaterThan(lo, box.max));
-      if (!apart && inBoxes == Side::outside) inBoxes = Side::partly;
+    for (const Box& box : boxes) inBoxes = std::max(inBoxes, sideOfBox(box, lo, hi));
+    for (const Box& cutout : cutouts) {
+      const Side side = sideOfBox(cutout, lo, hi);
+      const Side left = side == Side::inside ? Side::outside : side == Side::partly ? Side::partly : Side::inside;
+      inBoxes = std::min(inBoxes, left);
     }
     return std::min(inBoxes, sideOf(planes, lo, hi));
   }
 
-  std::vector<Box> boxes;
+  static Side sideOfBox(const Box& box, const glm::dvec3& lo, const glm::dvec3& hi) {
+    if (box.contains(lo) && box.contains(hi)) return Side::inside;
+    const bool apart = glm::any(glm::lessThan(hi, box.min)) || glm::any(glm::greaterThan(lo, box.max));
+    return apart ? Side::outside : Side::partly;
+  }
+
+  std::vector<Box> boxes, cutouts;
   std::vector<glm::dvec4> planes;
 };
 

@@ -72,7 +72,7 @@ struct ClipSteps {
 /// One grid as a frame sees it: xyz of a row is the step along each axis, w the base.
 struct GridTransform {
   glm::vec4 x, y, depth;
-  std::vector<ClipSteps> clipBoxes;
+  std::vector<ClipSteps> clipBoxes, clipCutouts;
   std::vector<glm::vec4> clipPlanes;  ///< rows; inside where the value is >= 0
 };
 

@@ -152,10 +152,13 @@ class Projector {
     const auto within = [](Floats d, float lo, float hi) {
       return hn::And(hn::Ge(d, hn::Set(kFloat, lo)), hn::Le(d, hn::Set(kFloat, hi)));
     };
+    const auto inBox = [&](const ClipSteps& box) {
+      return hn::And(within(dx, box.lo.x, box.hi.x),
+                     hn::And(within(dy, box.lo.y, box.hi.y), within(dz, box.lo.z, box.hi.z)));
+    };
     Mask kept = view_.clip->clipBoxes.empty() ? hn::FirstN(kFloat, hn::Lanes(kFloat)) : hn::FirstN(kFloat, 0);
-    for (const ClipSteps& box : view_.clip->clipBoxes)
-      kept = hn::Or(kept, hn::And(within(dx, box.lo.x, box.hi.x),
-                                  hn::And(within(dy, box.lo.y, box.hi.y), within(dz, box.lo.z, box.hi.z))));
+    for (const ClipSteps& box : view_.clip->clipBoxes) kept = hn::Or(kept, inBox(box));
+    for (const ClipSteps& box : view_.clip->clipCutouts) kept = hn::AndNot(inBox(box), kept);
     for (const glm::vec4& plane : view_.clip->clipPlanes)
       kept = hn::And(kept, hn::Ge(Row(plane)(dx, dy, dz), hn::Zero(kFloat)));
     return kept;

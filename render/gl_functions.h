@@ -73,7 +73,7 @@ namespace strata {
   X(void, Uniform1ui, (int location, unsigned x))                                                                \
   X(void, Uniform2f, (int location, float x, float y))                                                           \
   X(void, Uniform2fv, (int location, int count, const float* values))                                            \
-  X(void, Uniform2i, (int location, int x, int y))                                                               \
+  X(void, Uniform3i, (int location, int x, int y, int z))                                                        \
   X(void, Uniform3iv, (int location, int count, const int* values))                                              \
   X(void, Uniform3ui, (int location, unsigned x, unsigned y, unsigned z))                                        \
   X(void, Uniform4f, (int location, float x, float y, float z, float w))                                         \

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "core/error.h"
 #include "render/gpu_part.h"
@@ -30,16 +31,25 @@ std::vector<ShaderStage> planStages(bool software) {
 
 glm::dvec4 wide(const glm::dvec3& v) { return {v, 0.0}; }
 
+/// Boxes and behind them cutouts, with their places in the shader's arrays.
+template <typename Boxes, typename Visit>
+void forEachClipBox(const Boxes& boxes, const Boxes& cutouts, Visit visit) {
+  std::size_t place = 0;
+  for (const Boxes& some : {std::cref(boxes), std::cref(cutouts)})
+    for (const auto& box : some)
+      if (place < Clip::kMost) visit(place++, box);
+}
+
 shader::ViewRecord viewRecord(const ViewConstants& c, const Clip& clip) {
   shader::ViewRecord record{};
   std::copy(c.planes.begin(), c.planes.end(), record.planes);
   record.eye = wide(c.view.eye);
   record.forward = c.projection.rowDepth;
   record.size = {c.pixelsPerMetre, c.cornerStretch, c.view.nearPlane, c.view.orthographic ? 0.0 : 1.0};
-  for (std::size_t i = 0; i < std::min(clip.boxes.size(), Clip::kMost); ++i) {
-    record.clipLo[i] = wide(clip.boxes[i].min - c.view.eye);
-    record.clipHi[i] = wide(clip.boxes[i].max - c.view.eye);
-  }
+  forEachClipBox(clip.boxes, clip.cutouts, [&](std::size_t i, const Box& box) {
+    record.clipLo[i] = wide(box.min - c.view.eye);
+    record.clipHi[i] = wide(box.max - c.view.eye);
+  });
   for (std::size_t i = 0; i < std::min(clip.planes.size(), Clip::kMost); ++i)
     record.clipPlanes[i] =
         glm::dvec4(glm::dvec3(clip.planes[i]), glm::dot(clip.planes[i], glm::dvec4(c.view.eye, 1.0)));
@@ -51,10 +61,10 @@ shader::GridRecord gridRecord(const GridTransform& grid) {
   record.x = grid.x;
   record.y = grid.y;
   record.depth = grid.depth;
-  for (std::size_t i = 0; i < std::min(grid.clipBoxes.size(), Clip::kMost); ++i) {
-    record.clipLo[i] = glm::vec4(grid.clipBoxes[i].lo, 0.0f);
-    record.clipHi[i] = glm::vec4(grid.clipBoxes[i].hi, 0.0f);
-  }
+  forEachClipBox(grid.clipBoxes, grid.clipCutouts, [&](std::size_t i, const ClipSteps& box) {
+    record.clipLo[i] = glm::vec4(box.lo, 0.0f);
+    record.clipHi[i] = glm::vec4(box.hi, 0.0f);
+  });
   for (std::size_t i = 0; i < std::min(grid.clipPlanes.size(), Clip::kMost); ++i)
     record.clipPlanes[i] = grid.clipPlanes[i];
   return record;
@@ -142,8 +152,9 @@ DrawStats GlScene::prepare(const RenderList& list, std::span<const View> views, 
   drawable_ = std::any_of(constants_.begin(), constants_.end(), [](const ViewConstants& c) { return c.drawable; });
   variant_ = {static_cast<int>(views.size()), !options.clip.empty(), !options.classes.all()};
   classes_ = options.classes;
-  clips_ = {static_cast<int>(std::min(options.clip.boxes.size(), Clip::kMost)),
-            static_cast<int>(std::min(options.clip.planes.size(), Clip::kMost))};
+  const std::size_t boxes = std::min(options.clip.boxes.size(), Clip::kMost);
+  clips_ = glm::ivec3(glm::uvec3(boxes, std::min(options.clip.planes.size(), Clip::kMost),
+                                 std::min(options.clip.cutouts.size(), Clip::kMost - boxes)));
   forcedPlanes_ = how.forcedPlanes;
   frame.needs = {variant_.classes, how.colours, &options, colourKey(options)};
   frame.grids.resize(views.size());
@@ -332,7 +343,7 @@ void GlScene::dispatchPlan() {
   viewBuffer_.bindStorage(STRATA_BINDING_VIEWS);
   runBuffer_.bindStorage(STRATA_BINDING_RUNS);
   bindCounters();
-  gl_.Uniform2i(STRATA_UNIFORM_CLIPS, clips_.x, clips_.y);
+  gl_.Uniform3i(STRATA_UNIFORM_CLIPS, clips_.x, clips_.y, clips_.z);
   gl_.Uniform1i(STRATA_UNIFORM_FORCED, forcedPlanes_);
   for (const PageRun& run : runs_) {
     if (run.partCount == 0) continue;
@@ -376,7 +387,7 @@ void GlScene::setViewUniforms() const {
   const int count = static_cast<int>(constants_.size());
   gl_.Uniform4fv(STRATA_UNIFORM_VIEWPORT, count, &viewports[0].x);
   gl_.Uniform2fv(STRATA_UNIFORM_LENS, count, &lenses[0].x);
-  gl_.Uniform2i(STRATA_UNIFORM_CLIPS, clips_.x, clips_.y);
+  gl_.Uniform3i(STRATA_UNIFORM_CLIPS, clips_.x, clips_.y, clips_.z);
   if (!variant_.classes) return;
   std::uint32_t words[8] = {};
   for (std::size_t c = 0; c < classes_.size(); ++c) words[c / 32] |= (classes_[c] ? 1u : 0u) << (c % 32);

@@ -84,7 +84,7 @@ class GlScene {
   ShaderVariant variant_;
   std::vector<ViewConstants> constants_;
   std::bitset<256> classes_;
-  glm::ivec2 clips_{0};
+  glm::ivec3 clips_{0};  ///< numbers of boxes, planes, cutouts
   int forcedPlanes_ = 0;
   bool drawable_ = false;
   std::vector<PageRun> runs_;

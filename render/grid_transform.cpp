@@ -51,8 +51,11 @@ bool GridFinder::addTransform(const glm::dvec3& step, const glm::dvec3& rest) {
   if (!usable(t.x) || !usable(t.y) || !usable(t.depth)) return false;
   const glm::dvec3 origin = constants_.view.eye + rest;
   const glm::dvec3 least = glm::max(step, 1e-300);
-  for (const Box& box : clip_.boxes)
-    t.clipBoxes.push_back({glm::vec3((box.min - origin) / least), glm::vec3((box.max - origin) / least)});
+  const auto inSteps = [&](const Box& box) {
+    return ClipSteps{glm::vec3((box.min - origin) / least), glm::vec3((box.max - origin) / least)};
+  };
+  for (const Box& box : clip_.boxes) t.clipBoxes.push_back(inSteps(box));
+  for (const Box& box : clip_.cutouts) t.clipCutouts.push_back(inSteps(box));
   for (const glm::dvec4& plane : clip_.planes)
     t.clipPlanes.push_back(fold(glm::dvec4(glm::dvec3(plane), glm::dot(plane, glm::dvec4(constants_.view.eye, 1.0)))));
   grids_.push_back(std::move(t));

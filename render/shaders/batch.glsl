@@ -7,7 +7,7 @@ layout(std430, binding = STRATA_BINDING_GRIDS) readonly buffer Grids { GridRecor
 layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewports[STRATA_VIEWS];
 layout(location = STRATA_UNIFORM_LENS) uniform vec2 lenses[STRATA_VIEWS];
 layout(location = STRATA_UNIFORM_CLASSES) uniform uint classes[8];
-layout(location = STRATA_UNIFORM_CLIPS) uniform ivec2 clips;
+layout(location = STRATA_UNIFORM_CLIPS) uniform ivec3 clips;
 
 /// One batch as one view sees it.
 struct Seen {
@@ -59,12 +59,15 @@ bool inImage(int view, vec3 place) {
          all(lessThan(place.xy, viewports[view].zw));
 }
 
-/// DrawOptions::clip, with its boxes and planes in steps of the grid.
+bool inClipBox(int grid, int i, vec3 d) {
+  return all(greaterThanEqual(d, grids[grid].clipLo[i].xyz)) && all(lessThanEqual(d, grids[grid].clipHi[i].xyz));
+}
+
+/// DrawOptions::clip, with its boxes, cutouts and planes in steps of the grid.
 bool keptByClip(int grid, vec3 d) {
   bool kept = clips.x == 0;
-  for (int i = 0; i < clips.x; ++i)
-    kept = kept || (all(greaterThanEqual(d, grids[grid].clipLo[i].xyz)) &&
-                    all(lessThanEqual(d, grids[grid].clipHi[i].xyz)));
+  for (int i = 0; i < clips.x; ++i) kept = kept || inClipBox(grid, i, d);
+  for (int i = clips.x; i < clips.x + clips.z; ++i) kept = kept && !inClipBox(grid, i, d);
   for (int i = 0; i < clips.y; ++i) kept = kept && along(grids[grid].clipPlanes[i], d) >= 0.0;
   return kept;
 }

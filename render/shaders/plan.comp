@@ -11,7 +11,7 @@ layout(std430, binding = STRATA_BINDING_RUNS) buffer Runs { DispatchRecord runs[
 layout(std430, binding = STRATA_BINDING_COUNTERS) buffer CountersOfFrame { Counters counters; };
 
 layout(location = STRATA_UNIFORM_FIRST_PART) uniform uint firstPart;
-layout(location = STRATA_UNIFORM_CLIPS) uniform ivec2 clips;
+layout(location = STRATA_UNIFORM_CLIPS) uniform ivec3 clips;
 layout(location = STRATA_UNIFORM_FORCED) uniform int forcedPlanes;
 
 const int kOutside = 0, kPartly = 1, kInside = 2;
@@ -25,14 +25,16 @@ int sideOf(dvec4 plane, dvec3 lo, dvec3 hi) {
   return plane.w + least.x + least.y + least.z >= 0.0LF ? kInside : kPartly;
 }
 
+int sideOfBox(int view, int i, dvec3 lo, dvec3 hi) {
+  dvec3 boxLo = views[view].clipLo[i].xyz, boxHi = views[view].clipHi[i].xyz;
+  if (all(greaterThanEqual(lo, boxLo)) && all(lessThanEqual(hi, boxHi))) return kInside;
+  return any(lessThan(hi, boxLo)) || any(greaterThan(lo, boxHi)) ? kOutside : kPartly;
+}
+
 int clipSide(int view, dvec3 lo, dvec3 hi) {
   int side = clips.x == 0 ? kInside : kOutside;
-  for (int i = 0; i < clips.x; ++i) {
-    dvec3 boxLo = views[view].clipLo[i].xyz, boxHi = views[view].clipHi[i].xyz;
-    if (all(greaterThanEqual(lo, boxLo)) && all(lessThanEqual(hi, boxHi))) side = kInside;
-    bool apart = any(lessThan(hi, boxLo)) || any(greaterThan(lo, boxHi));
-    if (!apart && side == kOutside) side = kPartly;
-  }
+  for (int i = 0; i < clips.x; ++i) side = max(side, sideOfBox(view, i, lo, hi));
+  for (int i = clips.x; i < clips.x + clips.z; ++i) side = min(side, kInside + kOutside - sideOfBox(view, i, lo, hi));
   for (int i = 0; i < clips.y; ++i) side = min(side, sideOf(views[view].clipPlanes[i], lo, hi));
   return side;
 }

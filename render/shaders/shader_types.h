@@ -15,7 +15,7 @@ using uvec4 = glm::uvec4;
 #endif
 
 #define STRATA_MOST_VIEWS 4  // pictures that one pass over the points makes
-#define STRATA_MOST_CLIPS 4  // boxes, and as many planes
+#define STRATA_MOST_CLIPS 4  // boxes and cutouts together, and as many planes
 
 // Storage blocks of drawing
 #define STRATA_BINDING_PAGE 0     // words of node data
@@ -37,7 +37,7 @@ using uvec4 = glm::uvec4;
 #define STRATA_UNIFORM_FIRST_RECORD 12  // of the first work-group
 #define STRATA_UNIFORM_PASS 13          // compute32: 0 is the depth pass, 1 the index pass
 #define STRATA_UNIFORM_CLASSES 14       // 8 words of bits: the classes drawn
-#define STRATA_UNIFORM_CLIPS 22         // number of clip boxes and planes
+#define STRATA_UNIFORM_CLIPS 22         // number of clip boxes, planes, cutouts
 #define STRATA_UNIFORM_PRECISIONS 23    // colours of 10, 20 and 30 bits instead of the points' own; 0: their own
 #define STRATA_UNIFORM_FIRST_PART 24    // planning
 #define STRATA_UNIFORM_FORCED 25        // planning, experiments: planes to read, and nothing is culled; 0: neither

@@ -79,6 +79,16 @@ TEST_P(GlOptions, ClipPointsByBoxesAndPlanes) {
   expectTheCpusPicture(view_, options);
 }
 
+TEST_P(GlOptions, LeaveOutWhatIsInACutout) {
+  STRATA_CREATE_OR_SKIP();
+  DrawOptions options;
+  options.clip.cutouts.push_back({kUtm - glm::dvec3(60.0, 80.0, 5.0), kUtm + glm::dvec3(10.0, 20.0, 12.0)});
+  expectTheCpusPicture(view_, options);
+  options.clip.boxes.push_back({kUtm - glm::dvec3(70.0, 70.0, 50.0), kUtm + glm::dvec3(90.0, 70.0, 50.0)});
+  options.clip.cutouts.push_back({kUtm + glm::dvec3(20.0, 20.0, -50.0), kUtm + glm::dvec3(50.0, 70.0, 50.0)});
+  expectTheCpusPicture(view_, options);
+}
+
 TEST_P(GlOptions, DrawOnlyTheClassesAskedFor) {
   STRATA_CREATE_OR_SKIP();
   DrawOptions options;

@@ -31,6 +31,7 @@ bool isWanted(const DrawOptions& options, const NodeData& node, std::uint32_t po
   if (!node.classification.empty() && !options.classes[node.classification[point]]) return false;
   bool inBoxes = options.clip.boxes.empty();
   for (const Box& box : options.clip.boxes) inBoxes = inBoxes || box.contains(position);
+  for (const Box& box : options.clip.cutouts) inBoxes = inBoxes && !box.contains(position);
   for (const glm::dvec4& plane : options.clip.planes)
     if (glm::dot(plane, glm::dvec4(position, 1.0)) < 0.0) return false;
   return inBoxes;

@@ -168,6 +168,33 @@ TEST(Clip, DrawsOnlyWhatIsInOneOfTheBoxesAndBeforeAllPlanes) {
   }
 }
 
+TEST(Clip, DrawsNothingThatIsInACutoutWithBoxesAndWithout) {
+  const RenderList list = town();
+  const glm::dvec3 off(0.00051);  // no point lies on a border
+  DrawOptions options;
+  for (const View& view : test::viewsAround(test::boundsOf(list), 8, 300, 300)) {
+    options.clip = {};
+    options.clip.cutouts = {{kUtm - glm::dvec3(60.0, 60.0, 50.0) + off, kUtm + glm::dvec3(10.0, 20.0, 50.0) + off},
+                            {kUtm - glm::dvec3(5.0, 5.0, 50.0) + off, kUtm + glm::dvec3(40.0, 60.0, 50.0) + off}};
+    expectOraclesPicture(list, view, options);
+    options.clip.boxes = {{kUtm - glm::dvec3(80.0, 80.0, 50.0) + off, kUtm + glm::dvec3(80.0, 80.0, 8.0) + off}};
+    expectOraclesPicture(list, view, options);
+  }
+}
+
+TEST(Clip, ACutoutLeavesOutTheBatchesInsideIt) {
+  const RenderList list = town();
+  const View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.71}, 300, 300, 1.0);
+  DrawOptions options;
+  DrawPlan whole, clipped;
+  planBatches(list, view, options, whole);
+  const Box bounds = test::boundsOf(list);
+  options.clip.cutouts = {{bounds.min - 1e4, glm::dvec3(bounds.centre().x, bounds.max.y + 1e4, bounds.max.z + 1e4)}};
+  planBatches(list, view, options, clipped);
+  EXPECT_LT(clipped.batches.size(), whole.batches.size());
+  EXPECT_EQ(clipped.batches.size() + clipped.batchesCulled, whole.batches.size() + whole.batchesCulled);
+}
+
 TEST(Clip, LeavesOutBatchesThatAreOutside) {
   const RenderList list = town();
   const View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.71}, 300, 300, 1.0);
