@@ -33,7 +33,7 @@ void Layers::setShown(const std::vector<bool>& shown) {
   shown_ = shown;
   shown_.resize(stores_.size(), true);
   setSelection(selection_);
-  setView(view_);
+  if (view_) setView(*view_);
 }
 
 void Layers::setView(const View& view, const View& ahead) {
@@ -63,7 +63,7 @@ const RenderList& Layers::beginFrame() {
     return list;
   }
   // Let go of the old nodes first: a streamer frees what it evicted only once nobody else holds it.
-  merged_.view = view_;
+  if (view_) merged_.view = *view_;
   merged_.items.clear();
   merged_.pointCount = 0;
   merged_.missingNodes = 0;
@@ -75,9 +75,9 @@ const RenderList& Layers::beginFrame() {
   return merged_;
 }
 
-const std::shared_ptr<const Store>& Layers::storeOfItem(std::size_t item) const {
+std::size_t Layers::indexOfItem(std::size_t item) const {
   const auto end = std::upper_bound(itemEnds_.begin(), itemEnds_.end(), item);
-  return stores_[std::min(static_cast<std::size_t>(end - itemEnds_.begin()), stores_.size() - 1)];
+  return std::min(static_cast<std::size_t>(end - itemEnds_.begin()), stores_.size() - 1);
 }
 
 bool Layers::complete() const {

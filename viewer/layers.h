@@ -1,6 +1,7 @@
 #pragma once
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,8 @@ class Layers {
   bool waitUntilComplete(std::chrono::milliseconds timeout);
 
   const std::vector<std::shared_ptr<const Store>>& stores() const { return stores_; }
-  /// The store that an item of the list came from which beginFrame() gave last.
-  const std::shared_ptr<const Store>& storeOfItem(std::size_t item) const;
+  /// Which of stores() an item came from of the list that beginFrame() gave last.
+  std::size_t indexOfItem(std::size_t item) const;
   /// Summed over the layers; lodMs is the longest.
   StreamerStats stats() const;
 
@@ -38,7 +39,7 @@ class Layers {
   std::vector<std::shared_ptr<const Store>> stores_;
   std::vector<bool> shown_;
   SelectionOptions selection_;
-  View view_;
+  std::optional<View> view_;  ///< none before the first setView()
   RenderList merged_;
   std::vector<std::size_t> itemEnds_;  ///< of each store's items in the newest list
   std::vector<std::unique_ptr<Streamer>> streamers_;

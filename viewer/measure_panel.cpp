@@ -6,17 +6,16 @@
 #include <array>
 #include <cstdio>
 
-#include "viewer/camera_control.h"
+#include "viewer/choose_panel.h"
+#include "viewer/overlay.h"
 
 namespace strata {
 namespace {
 
 constexpr float kWidth = 300.0f;  // pixels
 constexpr float kMargin = 12.0f;
-constexpr float kFigureGap = 12.0f;
-constexpr ImU32 kLine = IM_COL32(255, 196, 0, 255);
-constexpr ImU32 kCurrent = IM_COL32(64, 200, 255, 255);
-constexpr ImU32 kShade = IM_COL32(0, 0, 0, 170);
+constexpr std::uint32_t kLine = 0xff00c4ffu;
+constexpr std::uint32_t kCurrent = 0xffffc840u;
 constexpr std::array kKinds{MeasureKind::point, MeasureKind::distance, MeasureKind::height, MeasureKind::angle,
                             MeasureKind::area};
 
@@ -102,48 +101,22 @@ void drawBookmarks(ToolsState& state, ToolsRequest& request) {
   }
 }
 
-ImVec2 at(const glm::dvec2& pixel) {
-  const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
-  return {static_cast<float>(pixel.x) / scale.x, static_cast<float>(pixel.y) / scale.y};
-}
-
-/// A text above the place it belongs to.
-void drawFigure(const std::string& text, const View& view, const glm::dvec3& place, ImU32 colour) {
-  if (text.empty() || depthOf(view, place) <= view.nearPlane) return;
-  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  ImVec2 corner = at(pixelOf(view, place));
-  corner.x -= 0.5f * size.x;
-  corner.y -= size.y + kFigureGap;
-  canvas->AddRectFilled({corner.x - 4.0f, corner.y - 2.0f}, {corner.x + size.x + 4.0f, corner.y + size.y + 2.0f},
-                        kShade, 3.0f);
-  canvas->AddText(corner, colour, text.c_str());
-}
-
-void drawOne(const Measurement& m, const View& view, ImU32 colour) {
-  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
+void drawOne(const Measurement& m, const View& view, std::uint32_t colour) {
   const std::size_t count = m.points.size();
   const bool closed = m.kind == MeasureKind::area && count > 2;
   for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i)
-    if (const auto segment = segmentOnScreen(view, m.points[i], m.points[(i + 1) % count])) {
-      canvas->AddLine(at(segment->first), at(segment->second), kShade, 4.0f);
-      canvas->AddLine(at(segment->first), at(segment->second), colour, 2.0f);
-    }
+    overlayRimmedLine(view, m.points[i], m.points[(i + 1) % count], colour);
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : m.points) middle += p / static_cast<double>(count);
-  drawFigure(measureText(m), view, m.kind == MeasureKind::angle && count == 3 ? m.points[1] : middle, colour);
-  for (const glm::dvec3& p : m.points) {
-    if (depthOf(view, p) <= view.nearPlane) continue;
-    canvas->AddCircleFilled(at(pixelOf(view, p)), 5.0f, kShade);
-    canvas->AddCircleFilled(at(pixelOf(view, p)), 3.5f, colour);
-  }
+  overlayText(view, m.kind == MeasureKind::angle && count == 3 ? m.points[1] : middle, measureText(m), colour);
+  for (const glm::dvec3& p : m.points) overlayDot(view, p, colour, 3.5f);
 }
 
 }  // namespace
 
-ToolsRequest drawToolsPanel(ToolsState& state, int width) {
+ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& bounds) {
   ToolsRequest request;
-  const float right = static_cast<float>(width) / ImGui::GetIO().DisplayFramebufferScale.x;
+  const float right = static_cast<float>(view.width) / ImGui::GetIO().DisplayFramebufferScale.x;
   ImGui::SetNextWindowPos(ImVec2(right - kMargin, kMargin), ImGuiCond_Appearing,
                           ImVec2(1.0f, 0.0f));  // its right upper corner
   const float outer = kWidth + 2.0f * kMargin;
@@ -161,6 +134,10 @@ ToolsRequest drawToolsPanel(ToolsState& state, int width) {
       }
     if (ImGui::CollapsingHeader("Point", ImGuiTreeNodeFlags_DefaultOpen)) drawPicked(state);
     if (ImGui::CollapsingHeader("Measure", ImGuiTreeNodeFlags_DefaultOpen)) drawMeasure(state, request);
+    if (ImGui::CollapsingHeader("Clip"))
+      request.pictureChanged = drawClipSection(state.clip, view, bounds) || request.pictureChanged;
+    if (ImGui::CollapsingHeader("Classes"))
+      request.pictureChanged = drawClassSection(state.census.present(), state.classes) || request.pictureChanged;
     if (ImGui::CollapsingHeader("Keep", ImGuiTreeNodeFlags_DefaultOpen)) drawBookmarks(state, request);
   }
   ImGui::End();
@@ -171,8 +148,7 @@ void drawMeasurements(const MeasureTool& tool, const View& view, const std::opti
   for (const Measurement& m : tool.kept())
     if (m.visible) drawOne(m, view, kLine);
   if (tool.current() && !tool.current()->points.empty()) drawOne(*tool.current(), view, kCurrent);
-  if (!picked || depthOf(view, picked->position) <= view.nearPlane) return;
-  ImGui::GetBackgroundDrawList()->AddCircle(at(pixelOf(view, picked->position)), 7.0f, kCurrent, 0, 2.0f);
+  if (picked) overlayRing(view, picked->position, kCurrent, 7.0f);
 }
 
 }  // namespace strata

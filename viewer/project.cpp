@@ -1,11 +1,13 @@
 #include "viewer/project.h"
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "core/error.h"
+#include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
 
 namespace strata {
@@ -122,6 +124,48 @@ Measurement parseMeasurement(const std::string& file, const Json& json, const st
   return m;
 }
 
+ClipBox parseClipBox(const std::string& file, const Json& json) {
+  const Members members(file, json, "clip_boxes");
+  ClipBox box;
+  std::string show = "inside";
+  members.read("name", box.name);
+  members.read("on", box.on);
+  members.read("show", show);
+  if (show != "inside" && show != "outside") members.fail("show", "inside or outside");
+  box.cutout = show == "outside";
+  glm::dvec3 from(1.0), to(-1.0);
+  members.read("from", from);
+  members.read("to", to);
+  box.box = {from, to};
+  if (box.box.empty()) members.fail("to", "from and to, two corners of a box");
+  return box;
+}
+
+Json classesJson(const std::bitset<256>& classes) {
+  Json list = Json::array();
+  for (std::size_t c = 0; c < classes.size(); ++c)
+    if (classes[c]) list.push_back(c);
+  return list;
+}
+
+std::string colourText(const glm::u8vec3& colour) {
+  char text[8];
+  std::snprintf(text, sizeof text, "%02x%02x%02x", colour.x, colour.y, colour.z);
+  return text;
+}
+
+void parseBackground(const Members& members, DrawOptions& draw) {
+  std::string top = colourText(draw.background), below;
+  members.read("background", top);
+  members.read("background_below", below);
+  try {
+    draw.background = parseHexColour(top);
+    if (!below.empty()) draw.backgroundBelow = parseHexColour(below);
+  } catch (const UsageError&) {
+    members.fail("background", "RRGGBB");
+  }
+}
+
 void parseDraw(const Members& members, Project& project) {
   DrawOptions& draw = project.draw;
   std::string colour = colourName(draw.colour);
@@ -141,6 +185,14 @@ void parseDraw(const Members& members, Project& project) {
   members.read("intensity_high", high);
   members.read("elevation_low", draw.elevationRange.x);
   members.read("elevation_high", draw.elevationRange.y);
+  members.read("fill", draw.fill, 1, DrawOptions::kLargestFill);
+  if (draw.fill % 2 == 0) members.fail("fill", "1, 3, 5 or 7");
+  for (const Json& hidden : members.list("hidden_classes")) {
+    if (!hidden.is_number_unsigned() || hidden.get<std::uint64_t>() > 255)
+      members.fail("hidden_classes", "classes from 0 to 255");
+    draw.classes.reset(hidden.get<std::size_t>());
+  }
+  parseBackground(members, draw);
   draw.edlStrength = static_cast<float>(strength);
   draw.shading = highQuality ? Shading::highQuality : Shading::plain;
   draw.intensityRange = {static_cast<float>(low), static_cast<float>(high)};
@@ -176,8 +228,19 @@ std::string projectJson(const std::string& path, const Project& project) {
                       {"intensity_high", draw.intensityRange.y},
                       {"elevation_low", draw.elevationRange.x},
                       {"elevation_high", draw.elevationRange.y},
+                      {"fill", draw.fill},
+                      {"background", colourText(draw.background)},
+                      {"hidden_classes", classesJson(~draw.classes)},
                       {"point_budget", project.pointBudget},
                       {"points_per_pixel", project.pointsPerPixel}};
+  if (draw.backgroundBelow) json["settings"]["background_below"] = colourText(*draw.backgroundBelow);
+  json["clip_boxes"] = Json::array();
+  for (const ClipBox& box : project.clipBoxes)
+    json["clip_boxes"].push_back({{"name", box.name},
+                                  {"on", box.on},
+                                  {"show", box.cutout ? "outside" : "inside"},
+                                  {"from", vectorJson(box.box.min)},
+                                  {"to", vectorJson(box.box.max)}});
   json["bookmarks"] = Json::array();
   for (const Bookmark& bookmark : project.bookmarks)
     json["bookmarks"].push_back({{"name", bookmark.name}, {"camera", viewJson(bookmark.view)}});
@@ -220,6 +283,7 @@ Project parseProject(const std::string& path, const std::string& text) {
     if (const Json* camera = bookmark.find("camera")) read.view = parseView(path, *camera, "bookmarks.camera");
     project.bookmarks.push_back(std::move(read));
   }
+  for (const Json& entry : members.list("clip_boxes")) project.clipBoxes.push_back(parseClipBox(path, entry));
   for (const Json& entry : members.list("measurements"))
     project.measurements.push_back(parseMeasurement(path, entry, "measurements"));
   return project;

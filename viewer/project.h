@@ -5,6 +5,7 @@
 #include "core/frame.h"
 #include "core/view.h"
 #include "lod/selection.h"
+#include "viewer/clip_boxes.h"
 #include "viewer/measurement.h"
 
 namespace strata {
@@ -22,7 +23,8 @@ struct Project {
   std::vector<std::string> stores;  ///< in the file relative to it where they can be, so that a folder can move
   std::vector<bool> shown;          ///< by store
   View view;
-  DrawOptions draw;
+  DrawOptions draw;  ///< but for its clip
+  std::vector<ClipBox> clipBoxes;
   std::uint64_t pointBudget = SelectionOptions{}.pointBudget;
   double pointsPerPixel = SelectionOptions{}.pointsPerPixel;
   std::vector<Bookmark> bookmarks;

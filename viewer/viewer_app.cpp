@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "viewer/camera_control.h"
+#include "viewer/choose_panel.h"
 #include "viewer/layers.h"
 #include "viewer/measure_panel.h"
 #include "viewer/panel.h"
@@ -80,6 +81,9 @@ class ViewerApp {
     for (const auto& store : layers_.stores()) stats_.pointsInStores += store->info().points;
     tools_.layers = namesOf(options.stores);
     tools_.shown.assign(options.stores.size(), true);
+    tools_.classes = settings_.draw.classes;
+    planes_ = settings_.draw.clip.planes;
+    for (const Box& box : settings_.draw.clip.boxes) tools_.clip.add(box);
   }
 
   /// Goes on where a session was left.
@@ -89,6 +93,8 @@ class ViewerApp {
     settings_.selection.pointsPerPixel = project.pointsPerPixel;
     tools_.shown = project.shown;
     tools_.bookmarks = project.bookmarks;
+    tools_.classes = project.draw.classes;
+    tools_.clip.boxes() = project.clipBoxes;
     tools_.measure.kept() = project.measurements;
     control_.setView(project.view);
     layers_.setSelection(settings_.selection);
@@ -107,7 +113,7 @@ class ViewerApp {
       steer(input);
       useTools(input);
       drawFrame(input.width, input.height);
-      const bool changed = drawOver(input.width);
+      const bool changed = drawOver();
       window_.finishFrame();
       window_.present();
       idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0 && !control_.gliding() &&
@@ -125,7 +131,7 @@ class ViewerApp {
       layers_.setView(control_.view());
       layers_.waitUntilComplete(kLongestWait);
       drawFrame(input.width, input.height);
-      drawOver(input.width);
+      drawOver();
       window_.finishFrame();
       uploading = stats_.draw.nodesNotUploaded > 0 && stats_.draw.bytesUploaded > 0;
     }
@@ -148,9 +154,15 @@ class ViewerApp {
   void steer(const WindowInput& input) {
     control_.resize(input.width, input.height);
     control_.advance(input.seconds);
-    if (input.leftPressed) control_.press(CameraControl::Drag::orbit, input.cursor, pointUnder(input.cursor));
+    if (input.leftPressed && tools_.clip.press(control_.view(), input.cursor)) {
+      control_.release();
+    } else if (input.leftPressed)
+      control_.press(CameraControl::Drag::orbit, input.cursor, pointUnder(input.cursor));
     if (input.rightPressed) control_.press(CameraControl::Drag::pan, input.cursor, pointUnder(input.cursor));
-    if (input.dragging) control_.move(input.cursor);
+    if (input.dragging && tools_.clip.held())
+      tools_.clip.move(control_.view(), input.cursor);
+    else if (input.dragging)
+      control_.move(input.cursor);
     if (!input.dragging) control_.release();
     if (input.wheel != 0.0) control_.wheel(input.wheel, input.cursor, pointUnder(input.cursor));
     if (!input.fly.still()) control_.fly(input.fly, input.seconds);
@@ -173,10 +185,12 @@ class ViewerApp {
     if (input.takeBack) tools_.measure.undo();
     if (input.drop) tools_.measure.cancel();
     if (input.save) saveProject();
-    if (input.clicked && list_ != nullptr) {
+    const bool onHandle = tools_.clip.held().has_value();
+    if (!input.dragging) tools_.clip.release();
+    if (input.clicked && !onHandle && list_ != nullptr) {
       if (const auto seen = drawnPointAt(*list_, frame_, input.cursor, kClickReach)) {
         const std::shared_ptr<const NodeData>& node = list_->items[seen->item].node;
-        lookup_.ask(layers_.storeOfItem(seen->item), node->key, seen->point,
+        lookup_.ask(layers_.stores()[layers_.indexOfItem(seen->item)], node->key, seen->point,
                     pointUnder(input.cursor).value_or(node->origin));
       }
     }
@@ -197,6 +211,9 @@ class ViewerApp {
     layers_.setView(control_.view(), motion_.ahead(control_.view(), start));
     const RenderList& list = layers_.beginFrame();
     list_ = &list;
+    for (std::size_t i = 0; i < list.items.size(); ++i) tools_.census.add(layers_.indexOfItem(i), *list.items[i].node);
+    settings_.draw.clip = clipOf(tools_.clip.boxes(), planes_);
+    settings_.draw.classes = tools_.classes;
     stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
     screen_.upload(frame_);
     window_.drawPicture(screen_.texture());
@@ -208,11 +225,12 @@ class ViewerApp {
   }
 
   /// Measurements, panels and messages. True when something was changed that the picture shows.
-  bool drawOver(int width) {
+  bool drawOver() {
+    drawClipBoxes(tools_.clip, control_.view());
     drawMeasurements(tools_.measure, control_.view(), tools_.picked);
     const bool changed = drawPanel(settings_, stats_);
     if (changed) layers_.setSelection(settings_.selection);
-    const ToolsRequest request = drawToolsPanel(tools_, width);
+    const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);
     if (request.goTo) control_.glideTo(*request.goTo);
     if (request.addBookmark)
@@ -224,7 +242,7 @@ class ViewerApp {
     if (request.saveProject) saveProject();
     drawHelp(helpOpen_);
     drawError(stats_.error);
-    return changed || request.layersChanged || request.goTo;
+    return changed || request.layersChanged || request.pictureChanged || request.goTo;
   }
 
   void save(const std::string& file, const std::string& text) {
@@ -238,7 +256,7 @@ class ViewerApp {
 
   void saveProject() {
     const std::string file = options_.project.empty() ? tools_.layers.front() + ".project.json" : options_.project;
-    save(file, projectJson(file, {options_.stores, tools_.shown, control_.view(), settings_.draw,
+    save(file, projectJson(file, {options_.stores, tools_.shown, control_.view(), settings_.draw, tools_.clip.boxes(),
                                   settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
                                   tools_.measure.kept()}));
   }
@@ -255,6 +273,7 @@ class ViewerApp {
   ViewerStats stats_;
   ToolsState tools_;
   PointLookup lookup_;
+  std::vector<glm::dvec4> planes_;  ///< of the command line
   bool helpOpen_ = false;
   const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
   Frame frame_;

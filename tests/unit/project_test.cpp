@@ -22,6 +22,12 @@ Project someProject() {
   project.draw.elevationRange = {-3.5, 99.25};
   project.draw.pointSize = 4;
   project.draw.shading = Shading::highQuality;
+  project.draw.background = {200, 210, 220};
+  project.draw.backgroundBelow = glm::u8vec3(10, 20, 30);
+  project.draw.fill = 5;
+  project.draw.classes.reset(7).reset(255);
+  project.clipBoxes = {{"the hall", {{1.5, 2.25, 3.0}, {630000.123456789, 5.0, 6.0}}, false, true},
+                       {"the noise", {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, true, false}};
   project.pointBudget = 12'345'678;
   project.pointsPerPixel = 1.75;
   project.bookmarks = {{"the \"tower\"", project.view}};
@@ -43,6 +49,11 @@ TEST(Project, ComesBackAsItWasSaved) {
   EXPECT_EQ(read.draw.elevationRange, saved.draw.elevationRange);
   EXPECT_EQ(read.draw.pointSize, 4);
   EXPECT_EQ(read.draw.shading, Shading::highQuality);
+  EXPECT_EQ(read.draw.background, saved.draw.background);
+  EXPECT_EQ(read.draw.backgroundBelow, saved.draw.backgroundBelow);
+  EXPECT_EQ(read.draw.fill, 5);
+  EXPECT_EQ(read.draw.classes, saved.draw.classes);
+  EXPECT_EQ(read.clipBoxes, saved.clipBoxes);
   EXPECT_EQ(read.pointBudget, saved.pointBudget);
   EXPECT_EQ(read.pointsPerPixel, saved.pointsPerPixel);
   ASSERT_EQ(read.bookmarks.size(), 1u);
@@ -75,6 +86,12 @@ TEST(Project, NamesWhatIsWrong) {
   EXPECT_NE(refusal(R"({"strata_project":1,"stores":[{"path":"a"}],"settings":{"point_size":900}})").find("point_size"),
             std::string::npos);
   EXPECT_NE(refusal(R"({"strata_project":1,"stores":[{"path":"a"}],"measurements":[{"kind":"volume"}]})").find("kind"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"strata_project":1,"stores":[{"path":"a"}],"clip_boxes":[{"from":[1,2,3],"to":[0,3,4]}]})")
+                .find("clip_boxes.to"),
+            std::string::npos);
+  EXPECT_NE(refusal(R"({"strata_project":1,"stores":[{"path":"a"}],"settings":{"hidden_classes":[-1]}})")
+                .find("hidden_classes"),
             std::string::npos);
   EXPECT_EQ(refusal(R"({"strata_project":1,"stores":[{"path":"a"}]})"), "accepted");
 }
