@@ -34,8 +34,13 @@ Streamer::Streamer(std::shared_ptr<const Store> store, const StreamerOptions& op
       builder_(*store_, index_.parent, options.leastPrecision, cache_) {
   newest_.selection = options.selection;
   for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<StreamedNode>());
+  const auto lane = [&](const std::string& name) {
+    return options.trace != nullptr ? &options.trace->addLane(name) : nullptr;
+  };
+  lodLane_ = lane("LOD");
   for (std::size_t i = 0; i < loaderCount(options); ++i)
-    loaders_.emplace_back([this](std::stop_token stop) { loaderLoop(stop); });
+    loaders_.emplace_back(
+        [this, own = lane("loader " + std::to_string(i + 1))](std::stop_token stop) { loaderLoop(stop, own); });
   lodThread_ = std::jthread([this](std::stop_token stop) { lodLoop(stop); });
 }
 
@@ -182,18 +187,25 @@ const CoarseDepth* Streamer::fillCoarseDepth(const Task& task) {
 
 void Streamer::runPass(const Task& task, bool isNewView) {
   const auto start = std::chrono::steady_clock::now();
+  TraceScope pass(lodLane_, "LOD pass");
+  TraceScope step(lodLane_, "coarse depth");
   const CoarseDepth* const depth = fillCoarseDepth(task);
+  step.next("select");
   selectNodes(store_->hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
   counters_.occluded.store(selection_.occluded, std::memory_order_relaxed);
   failed_.copyIfNewer(failures_, failuresVersion_);
+  step.next("build the list");
   const ListBuilder::Result built = builder_.build(selection_, failures_, back_, requests_);
   back_.list.view = task.view;
   back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
   const bool pending = !requests_.empty() || built.waiting > 0;
+  pass.count("nodes", back_.list.items.size());
   if (task.ahead) {
+    step.next("look ahead");
     selectNodes(store_->hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
     builder_.lookAhead(selectionAhead_, failures_, requests_);
   }
+  step.next("publish");
   queue_.replace(requests_);
   publish(back_);
 
@@ -235,7 +247,7 @@ void Streamer::releaseList(PinnedList& list, std::vector<NodeCache::Data>& out) 
 
 // --- loader threads
 
-void Streamer::loaderLoop(std::stop_token stop) {
+void Streamer::loaderLoop(std::stop_token stop, TraceLane* lane) {
   NodeLoader loader(store_);
   std::vector<LoadRequest> requests;
   while (std::unique_ptr<StreamedNode> buffer = transfer_.takeEmpty(stop)) {
@@ -245,7 +257,7 @@ void Streamer::loaderLoop(std::stop_token stop) {
       queue_.pop(stop, limits, requests);
       if (requests.empty()) return;
       keepWanted(requests);
-      if (!requests.empty() && !loadTogether(loader, requests, stop, buffer)) return;
+      if (!requests.empty() && !loadTogether(loader, requests, stop, lane, buffer)) return;
     }
   }
 }
@@ -277,9 +289,11 @@ void Streamer::keepWanted(std::vector<LoadRequest>& requests) {
 
 /// Leaves the buffer where it is when no node came to fill it. False when stopped.
 bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop,
-                            std::unique_ptr<StreamedNode>& buffer) {
+                            TraceLane* lane, std::unique_ptr<StreamedNode>& buffer) {
   try {
+    TraceScope span(lane, "read");
     const std::uint64_t bytes = loader.read(requests, stop);
+    span.count("bytes", bytes);
     if (bytes == 0) return false;
     counters_.bytesRead.fetch_add(bytes, std::memory_order_relaxed);
     counters_.reads.fetch_add(1, std::memory_order_relaxed);
@@ -295,10 +309,13 @@ bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> req
   for (const LoadRequest& request : requests) {
     if (stop.stop_requested()) return false;
     if (buffer == nullptr) buffer = transfer_.tryTakeEmpty();
-    if (buffer == nullptr)
+    if (buffer == nullptr) {
       queue_.putBack(request);  // another loader was quicker to take the buffer
-    else
+    } else {
+      TraceScope span(lane, "decode");
+      span.count("node", request.node);
       finishLoad(loader, request, buffer);
+    }
   }
   return true;
 }

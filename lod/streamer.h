@@ -22,6 +22,7 @@
 #include "lod/node_cache.h"
 #include "lod/node_loader.h"
 #include "lod/selection.h"
+#include "lod/trace.h"
 #include "lod/transfer_queues.h"
 
 // The life of one request:
@@ -49,6 +50,7 @@ struct StreamerOptions {
   bool lookAhead = true;                              ///< load for the view that setView() says is to come
   ReadLimits together;                                ///< what is read at once; `nodes` is as many as there are buffers
   std::chrono::milliseconds firstRetry{250};          ///< after a node has failed to load; each further wait is longer
+  Trace* trace = nullptr;                             ///< gets lanes of the threads; must outlive the streamer
 };
 
 /// Counts since construction, except where it says otherwise.
@@ -127,10 +129,10 @@ class Streamer {
   void runPass(const Task& task, bool isNewView);
   const CoarseDepth* fillCoarseDepth(const Task& task);
   void publish(PinnedList& list);
-  void loaderLoop(std::stop_token stop);
+  void loaderLoop(std::stop_token stop, TraceLane* lane);
   bool stillWanted(const LoadRequest& request);
   void keepWanted(std::vector<LoadRequest>& requests);
-  bool loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop,
+  bool loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop, TraceLane* lane,
                     std::unique_ptr<StreamedNode>& buffer);
   void finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer);
   void releaseList(PinnedList& list, std::vector<NodeCache::Data>& out);
@@ -176,6 +178,7 @@ class Streamer {
   std::unique_ptr<CoarseDepth> frontDepth_ = std::make_unique<CoarseDepth>();
 
   // Used by the LOD thread.
+  TraceLane* lodLane_ = nullptr;
   Selection selection_;
   ListBuilder builder_;
   PinnedList back_;

@@ -54,6 +54,7 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
   app.add_option("--video", o.video, "a film of the flight, such as flight.mp4, through ffmpeg; implies --settle");
   app.add_option("--screenshot-every", o.screenshotEvery, "write a PNG of every N-th frame")
       ->check(CLI::Range(1, 1000000));
+  app.add_flag("!--no-trace", o.trace, "write no trace.json");
   app.add_flag("--json", o.json, "print the measures as one JSON object");
 }
 

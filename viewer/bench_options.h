@@ -31,6 +31,7 @@ struct BenchOptions {
   bool edl = false;
   bool cold = false;
   bool settle = false;
+  bool trace = true;
   int repeat = 1;           ///< flights, each from empty caches
   int screenshotEvery = 0;  ///< frames; 0 = none
   std::string video;        ///< file for a film of the flight; empty = none

@@ -17,6 +17,7 @@
 #include "viewer/path_player.h"
 #include "viewer/stills.h"
 #include "viewer/text_file.h"
+#include "viewer/trace_file.h"
 
 namespace strata {
 namespace {
@@ -124,6 +125,7 @@ struct Flight {
   PlayedPath played;
   BenchMeasures measures;
   std::vector<std::pair<std::string, double>> counters;
+  std::unique_ptr<Trace> trace;  ///< null where none is wanted
 };
 
 std::uint64_t peakRssBytes() {
@@ -132,9 +134,15 @@ std::uint64_t peakRssBytes() {
 }
 
 Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::shared_ptr<const Store>& store,
-               Rasterizer& rasterizer, const PlayOptions& play) {
+               Rasterizer& rasterizer, PlayOptions play) {
   Flight flight;
-  Streamer streamer(store, options.streamer);
+  StreamerOptions streaming = options.streamer;
+  if (options.trace) {
+    flight.trace = std::make_unique<Trace>();
+    play.lane = &flight.trace->addLane("render");
+    streaming.trace = flight.trace.get();
+  }
+  Streamer streamer(store, streaming);
   flight.played = playPath(path, play, streamer, rasterizer);
   if (!flight.played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
   const StreamerStats stats = streamer.stats();
@@ -194,6 +202,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
   report.frames = std::move(typical.played.frames);
   report.jumps = std::move(typical.played.jumps);
   report.counters = std::move(typical.counters);
+  if (typical.trace != nullptr) writeText(options.output + "/trace.json", traceJson(*typical.trace, report.program));
   report.stages = {stage("taking the render list", report.frames, &FrameRecord::listMs, true),
                    stage("upload", report.frames, &FrameRecord::uploadMs, true),
                    stage("drawing", report.frames, &FrameRecord::drawMs, true),

@@ -101,15 +101,35 @@ std::uint64_t coveredPixels(const Frame& frame) {
          static_cast<std::uint64_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint));
 }
 
-FrameRecord drawFrame(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer,
-                      Frame& frame, const RenderList*& drawn) {
+/// The stages of a draw, as its stats say how long they took, one after the other from `begin` to at most `end`.
+void traceStages(TraceLane& lane, const DrawStats& stats, Clock::time_point begin, Clock::time_point end) {
+  const std::pair<const char*, double> stages[] = {
+      {"upload", stats.uploadMs}, {"rasterize", stats.drawMs}, {"resolve", stats.resolveMs}};
+  for (const auto& [name, ms] : stages) {
+    const auto length = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(ms));
+    const Clock::time_point done = std::min(begin + length, end);
+    if (ms > 0.0) lane.add({name, begin, done, nullptr, 0});
+    begin = done;
+  }
+}
+
+FrameRecord drawFrame(const View& view, const PlayOptions& options, int index, Streamer& streamer,
+                      Rasterizer& rasterizer, Frame& frame, const RenderList*& drawn) {
   FrameRecord record;
   const Clock::time_point start = Clock::now();
   const RenderList& list = streamer.beginFrame();
   drawn = &list;
-  record.listMs = msSince(start);
-  const DrawStats stats = rasterizer.draw(list, view, draw, frame);
-  record.frameMs = msSince(start);
+  const Clock::time_point listed = Clock::now();
+  const DrawStats stats = rasterizer.draw(list, view, options.draw, frame);
+  const Clock::time_point end = Clock::now();
+  if (options.lane != nullptr) {
+    options.lane->add({"frame", start, end, "frame", static_cast<std::uint64_t>(index)});
+    options.lane->add({"take the render list", start, listed, "nodes", list.items.size()});
+    options.lane->add({"draw", listed, end, "points", stats.pointsDrawn});
+    traceStages(*options.lane, stats, listed, end);
+  }
+  record.listMs = std::chrono::duration<double, std::milli>(listed - start).count();
+  record.frameMs = std::chrono::duration<double, std::milli>(end - start).count();
   record.uploadMs = stats.uploadMs;
   record.drawMs = stats.drawMs;
   record.resolveMs = stats.resolveMs;
@@ -147,6 +167,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
   JumpWatch jumps;
   const std::vector<View> firstView{view(0)};
   const Clock::time_point opened = Clock::now();
+  TraceScope span(options.lane, "first view");
   jumps.begin(0.0);
   streamer.setView(firstView.front());
   while (!played.reachedFullDetail && Clock::now() - opened < kLongestWait) {
@@ -166,6 +187,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
   Clock::time_point due = Clock::now();
   for (int index = 0; index < frames; ++index) {
     const View now = view(index);
+    span.next("place the camera");
     if (std::binary_search(cuts.begin(), cuts.end(), index)) {
       jumps.begin(index / path.fps);
       sinceJump.clear();
@@ -174,12 +196,14 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
     streamer.setView(now, view(std::min(index + aheadFrames, frames - 1)));
     double settleMs = 0.0;
     if (options.settle) {
+      span.next("wait for detail");
       const Clock::time_point start = Clock::now();
       streamer.waitUntilComplete(kLongestWait);
       settleMs = msSince(start);
     }
     const RenderList* list = nullptr;
-    FrameRecord record = drawFrame(now, options.draw, streamer, rasterizer, frame, list);
+    span.next("draw and measure");
+    FrameRecord record = drawFrame(now, options, index, streamer, rasterizer, frame, list);
     jumps.see(*list, sinceJump);
     const StreamerStats stats = streamer.stats();
     record.index = index;
@@ -192,13 +216,18 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
     record.pixelsCovered = coveredPixels(frame);
     record.hitch = index > 0 && isHitch(played.frames.back().frameMs, record.frameMs);
     played.frames.push_back(record);
+    if (options.pictures) span.next("keep pictures");
     shelf.offer(record, frame);
     if (video) video->add(imageOf(frame));
     // Real time: the loader gets the time that a flight at this rate leaves it, no more.
     due = std::max(due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / path.fps)),
                    Clock::now());
-    if (!options.settle) std::this_thread::sleep_until(due);
+    if (!options.settle) {
+      span.next("wait for the next frame");
+      std::this_thread::sleep_until(due);
+    }
   }
+  span.next("write pictures");
   if (video) video->finish();
   played.jumps = jumps.take();
   played.pictures = shelf.take();

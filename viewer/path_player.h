@@ -4,6 +4,7 @@
 
 #include "core/frame.h"
 #include "lod/streamer.h"
+#include "lod/trace.h"
 #include "render/rasterizer.h"
 #include "viewer/camera_path.h"
 #include "viewer/drawing.h"
@@ -19,7 +20,8 @@ struct PlayOptions {
   std::string folder;  ///< for the pictures
   std::string video;   ///< film of every frame; empty = none
   double nearPlane = 0.01;
-  bool pictures = true;  ///< false: none at all, marked frames neither
+  bool pictures = true;       ///< false: none at all, marked frames neither
+  TraceLane* lane = nullptr;  ///< gets what this thread does
 };
 
 /// What a flight left behind.

@@ -1,0 +1,162 @@
+// What strata-bench leaves behind: the trace, the page, the papers' tables.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/image.h"
+#include "tests/support/programs.h"
+
+namespace strata::test {
+namespace {
+
+class Bench : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TempFolder;
+    mustConvert({"synthetic:city?points=200000&seed=1"}, city(), {"--node-points", "4096"});
+    const Finished made = runProgram("strata-bench", {"--make-path", "dive", city().string()});
+    Json path = Json::parse(made.out);
+    for (Json& key : path["keys"]) key["t"] = key["t"].get<double>() / 16.0;
+    path["keys"].front()["mark"] = true;
+    std::ofstream(file("dive.json")) << path;
+    const Finished flown = fly("flight", {"--loader-threads", "2", "--size", "320x180", "--stills"});
+    if (flown.exitCode != 0) throw std::runtime_error("strata-bench failed: " + flown.err);
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static std::filesystem::path city() { return *folder_ / "city.strata"; }
+  static std::filesystem::path file(const std::string& name) { return *folder_ / name; }
+
+  static Finished fly(const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> all{city().string(), "--path", file("dive.json").string(), "-o", file(out).string(),
+                                 "--backend",     "cpu"};
+    all.insert(all.end(), more.begin(), more.end());
+    return runProgram("strata-bench", all);
+  }
+  static Json report(const std::string& run) { return Json::parse(readWhole(file(run) / "report.json")); }
+
+  /// A column of frames.csv.
+  static std::vector<double> column(const std::string& run, const std::string& name) {
+    std::ifstream csv(file(run) / "frames.csv");
+    const auto cells = [](const std::string& line) {
+      std::vector<std::string> parts;
+      std::istringstream in(line);
+      for (std::string part; std::getline(in, part, ',');) parts.push_back(part);
+      return parts;
+    };
+    std::string line;
+    std::getline(csv, line);
+    const std::vector<std::string> names = cells(line);
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    std::vector<double> values;
+    while (std::getline(csv, line)) values.push_back(std::stod(cells(line).at(at)));
+    return values;
+  }
+
+ private:
+  static TempFolder* folder_;
+};
+TempFolder* Bench::folder_ = nullptr;
+
+// --- trace.json
+
+struct Span {
+  std::string name, parent;
+  double begin, end;  ///< microseconds
+  Json args;
+};
+
+/// By the name of the thread; `parent` is the span around each.
+std::map<std::string, std::vector<Span>> spansOf(const Json& trace) {
+  std::map<int, std::string> threads;
+  std::map<std::string, std::vector<Span>> spans, open;
+  for (const Json& event : trace.at("traceEvents")) {
+    if (event.at("ph") == "M") {
+      if (event.at("name") == "thread_name") {
+        threads[event.at("tid")] = event.at("args").at("name");
+        spans[event.at("args").at("name")];
+      }
+      continue;
+    }
+    EXPECT_EQ(event.at("ph"), "X");
+    const std::string& thread = threads.at(event.at("tid"));
+    const double begin = event.at("ts");
+    Span span{event.at("name"), "", begin, begin + event.at("dur").get<double>(), event.value("args", Json::object())};
+    std::vector<Span>& around = open[thread];
+    while (!around.empty() && around.back().end <= span.begin + 5e-4 && around.back().end < span.end) around.pop_back();
+    if (!around.empty()) {
+      span.parent = around.back().name;
+      EXPECT_LE(span.end, around.back().end + 2e-3) << span.name << " leaves " << span.parent;
+    }
+    around.push_back(span);
+    spans[thread].push_back(span);
+  }
+  return spans;
+}
+
+TEST_F(Bench, TheTraceHasEveryThreadsSpansInOrderAndNested) {
+  const auto spans = spansOf(Json::parse(readWhole(file("flight") / "trace.json")));
+  std::map<std::string, std::set<std::string>> names;  // "frame in draw and measure"
+  for (const auto& [thread, list] : spans) {
+    double before = 0.0;
+    for (const Span& span : list) {
+      EXPECT_GE(span.begin, before) << thread << " " << span.name;
+      EXPECT_GE(span.end, span.begin) << thread << " " << span.name;
+      before = span.begin;
+      names[thread.substr(0, thread.find(' '))].insert(span.name + (span.parent.empty() ? "" : " in " + span.parent));
+    }
+  }
+  EXPECT_TRUE(spans.contains("loader 1") && spans.contains("loader 2") && spans.size() == 4);
+  EXPECT_EQ(names["LOD"],
+            (std::set<std::string>{"LOD pass", "coarse depth in LOD pass", "select in LOD pass",
+                                   "build the list in LOD pass", "look ahead in LOD pass", "publish in LOD pass"}));
+  EXPECT_EQ(names["loader"], (std::set<std::string>{"read", "decode"}));
+  EXPECT_EQ(names["render"],
+            (std::set<std::string>{"first view", "place the camera", "draw and measure", "frame in draw and measure",
+                                   "take the render list in frame", "draw in frame", "rasterize in draw",
+                                   "resolve in draw", "keep pictures", "wait for the next frame", "write pictures"}));
+}
+
+TEST_F(Bench, TheTraceCoversEveryFrameAndEveryByteRead) {
+  const auto spans = spansOf(Json::parse(readWhole(file("flight") / "trace.json")));
+  const std::vector<double> frameMs = column("flight", "frame_ms");
+  ASSERT_GT(frameMs.size(), 5u);
+  std::size_t frame = 0;
+  double within = 0.0;
+  for (const Span& span : spans.at("render")) {
+    if (span.parent == "frame") within += span.end - span.begin;
+    if (span.name != "frame") continue;
+    ASSERT_LT(frame, frameMs.size());
+    EXPECT_EQ(span.args.at("frame"), frame);
+    EXPECT_NEAR(1e-3 * (span.end - span.begin), frameMs[frame], 1e-3);
+    ++frame;
+  }
+  EXPECT_EQ(frame, frameMs.size());
+  double all = 0.0;
+  for (const double ms : frameMs) all += ms;
+  EXPECT_NEAR(1e-3 * within, all, 1e-2 * all);
+  double bytes = 0.0, decoded = 0.0;
+  for (const char* thread : {"loader 1", "loader 2"})
+    for (const Span& span : spans.at(thread)) {
+      if (span.name == "read") bytes += span.args.at("bytes").get<double>();
+      if (span.name == "decode") decoded += 1.0;
+    }
+  const Json counters = report("flight").at("counters");
+  EXPECT_GE(bytes, counters.at("bytes read").get<double>());
+  EXPECT_GE(decoded, counters.at("nodes loaded").get<double>());
+  EXPECT_GT(decoded, 0.0);
+}
+
+TEST_F(Bench, WithoutATraceThereIsNone) {
+  ASSERT_EQ(fly("untraced", {"--size", "160x90", "--no-trace"}).exitCode, 0);
+  EXPECT_FALSE(std::filesystem::exists(file("untraced") / "trace.json"));
+}
+
+}  // namespace
+}  // namespace strata::test
