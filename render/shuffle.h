@@ -1,0 +1,63 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+
+namespace strata {
+
+// Where the points of a pool lie: index i of [0, size) goes to place shuffled(i). Both ways are bijections, so that a
+// consecutive range of indices, which the memory manager hands out, owns places of its own all over the pool.
+
+/// `iterations` times the perfect shuffle (Rumpler 2019, eq. 3.2): i goes to size / 2 * (i mod 2) + i / 2. A bijection
+/// for an even size alone.
+constexpr std::uint32_t perfectShuffle(std::uint32_t i, std::uint32_t size, int iterations) {
+  for (int k = 0; k < iterations; ++k) i = (i & 1u) * (size / 2) + i / 2;
+  return i;
+}
+
+/// Half the logarithm of the size, rounded down: how often Rumpler 2019 (3.2) shuffles, before order comes back.
+constexpr int perfectShuffles(std::uint32_t size) { return size == 0 ? 0 : (std::bit_width(size) - 1) / 2; }
+
+/// A bijection for any size, another for each key: a Feistel network over the smallest power of two that holds the
+/// size, walked on until it falls inside (Black and Rogaway 2002, "Ciphers with Arbitrary Finite Domains"); less than
+/// two turns on average. Halves differ by a bit where the power is odd. No security is asked of it.
+class KeyedShuffle {
+ public:
+  KeyedShuffle(std::uint32_t size, std::uint32_t key) : size_(size), key_(key) {
+    const int bits = size > 1 ? std::bit_width(size - 1) : 0;
+    lowBits_ = bits / 2;
+    lowMask_ = (1u << lowBits_) - 1u;
+    highMask_ = (1u << (bits - lowBits_)) - 1u;
+  }
+
+  /// `i` < size.
+  std::uint32_t operator()(std::uint32_t i) const {
+    do i = encipher(i);
+    while (i >= size_);
+    return i;
+  }
+
+ private:
+  static constexpr std::uint32_t kRounds = 3;  ///< of two half rounds
+
+  std::uint32_t encipher(std::uint32_t i) const {
+    std::uint32_t low = i & lowMask_, high = i >> lowBits_;
+    for (std::uint32_t round = 0; round < kRounds; ++round) {
+      low ^= mixed(high, 2 * round) & lowMask_;
+      high ^= mixed(low, 2 * round + 1) & highMask_;
+    }
+    return high << lowBits_ | low;
+  }
+
+  std::uint32_t mixed(std::uint32_t half, std::uint32_t round) const {
+    std::uint32_t x = half + key_ + round * 0x9e3779b9u;
+    x = (x ^ x >> 16) * 0x85ebca6bu;
+    x = (x ^ x >> 13) * 0xc2b2ae35u;
+    return x ^ x >> 16;
+  }
+
+  std::uint32_t size_, key_;
+  int lowBits_ = 0;
+  std::uint32_t lowMask_ = 0, highMask_ = 0;
+};
+
+}  // namespace strata
