@@ -5,6 +5,24 @@
 
 namespace strata {
 
+View wholePicture(const View& view) {
+  if (view.part == PicturePart{}) return view;
+  View whole = view;
+  whole.width = view.part.pictureWidth;
+  whole.height = view.part.pictureHeight;
+  whole.part = {};
+  return whole;
+}
+
+View partOfPicture(const View& view, int left, int top, int width, int height) {
+  const View whole = wholePicture(view);
+  View part = whole;
+  part.width = width;
+  part.height = height;
+  part.part = {whole.width, whole.height, view.part.left + left, view.part.top + top};
+  return part;
+}
+
 ViewBasis viewBasis(const View& view) {
   glm::dvec3 forward = view.target - view.eye;
   const double length = glm::length(forward);
@@ -18,18 +36,19 @@ ViewBasis viewBasis(const View& view) {
 
 Projection projection(const View& view) {
   const ViewBasis basis = viewBasis(view);
-  const double halfWidth = 0.5 * view.width;
-  const double halfHeight = 0.5 * view.height;
+  const View whole = wholePicture(view);
+  const double halfWidth = 0.5 * whole.width - view.part.left;  // from the image's corner to the view's axis
+  const double halfHeight = 0.5 * whole.height - view.part.top;
   Projection p;
   p.eye = view.eye;
   p.rowDepth = glm::dvec4(basis.forward, 0.0);
   if (view.orthographic) {
-    const double scale = view.height / view.orthographicHeight;
+    const double scale = whole.height / view.orthographicHeight;
     p.rowX = glm::dvec4(basis.right * scale, halfWidth);
     p.rowY = glm::dvec4(-basis.up * scale, halfHeight);
     p.rowW = glm::dvec4(0.0, 0.0, 0.0, 1.0);
   } else {
-    const double focal = halfHeight / std::tan(0.5 * view.fovY);  // pixels
+    const double focal = 0.5 * whole.height / std::tan(0.5 * view.fovY);  // pixels
     p.rowX = glm::dvec4(basis.right * focal + basis.forward * halfWidth, 0.0);
     p.rowY = glm::dvec4(-basis.up * focal + basis.forward * halfHeight, 0.0);
     p.rowW = p.rowDepth;
@@ -56,8 +75,9 @@ bool boxInFrustum(const std::array<glm::dvec4, 5>& planes, const glm::dvec3& lo,
 }
 
 double pixelsAt(const View& view, double metres, double depth) {
-  if (view.orthographic) return metres * view.height / view.orthographicHeight;
-  return metres * 0.5 * view.height / (std::tan(0.5 * view.fovY) * std::max(depth, view.nearPlane));
+  const int height = wholePicture(view).height;
+  if (view.orthographic) return metres * height / view.orthographicHeight;
+  return metres * 0.5 * height / (std::tan(0.5 * view.fovY) * std::max(depth, view.nearPlane));
 }
 
 View viewOfBox(const Box& box, const glm::dvec3& direction, int width, int height, double fovY) {

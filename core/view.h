@@ -6,6 +6,14 @@
 
 namespace strata {
 
+/// Where an image lies in the larger picture that it is a part of; pixels. All zero: the image is the whole picture.
+struct PicturePart {
+  int pictureWidth = 0, pictureHeight = 0;
+  int left = 0, top = 0;  ///< of the image's first pixel
+
+  bool operator==(const PicturePart&) const = default;
+};
+
 /// A camera and its image, everything in double so that UTM coordinates do not jitter.
 /// Right-handed; the camera looks along target - eye; y of the image points down (row 0 is the top).
 struct View {
@@ -16,11 +24,17 @@ struct View {
   bool orthographic = false;
   double orthographicHeight = 1.0;  ///< metres seen from top to bottom of the image
   double nearPlane = 0.01;          ///< metres; points nearer than this are not drawn. There is no far plane
-  int width = 1920;
+  int width = 1920;                 ///< of the image
   int height = 1080;
+  PicturePart part;  ///< fovY and orthographicHeight are those of the whole picture
 
   bool operator==(const View&) const = default;
 };
+
+/// The view of the whole picture that `view` shows a part of, and back: `part` of the picture of `view`, from pixel
+/// (left, top) on. Drawn, the part is that piece of the whole picture, pixel for pixel.
+View wholePicture(const View& view);
+View partOfPicture(const View& view, int left, int top, int width, int height);
 
 /// Orthonormal camera frame. Degenerate input (eye == target, up along the view) falls back to a sane frame.
 struct ViewBasis {

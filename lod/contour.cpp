@@ -65,13 +65,14 @@ ViewVolume::ViewVolume(const View& view)
       pixelsPerMetre(0.0),
       cosHalfDiagonal(1.0),
       orthographic(view.orthographic) {
+  const View whole = wholePicture(view);
   if (orthographic) {
-    pixelsPerMetre = view.height / view.orthographicHeight;
+    pixelsPerMetre = whole.height / view.orthographicHeight;
     return;
   }
   const double tanY = std::tan(0.5 * view.fovY);
-  const double tanX = tanY * view.width / view.height;
-  pixelsPerMetre = 0.5 * view.height / tanY;
+  const double tanX = tanY * whole.width / whole.height;
+  pixelsPerMetre = 0.5 * whole.height / tanY;
   cosHalfDiagonal = 1.0 / std::sqrt(1.0 + tanX * tanX + tanY * tanY);
 }
 

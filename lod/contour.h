@@ -19,7 +19,8 @@ Contour contourOf(const NodeRecord& record);
 /// Distance of a point from the box in metres, 0 inside.
 double distanceTo(const Contour& contour, const glm::dvec3& point);
 
-/// A View in the form that testing many contours needs.
+/// A View in the form that testing many contours needs. Of a part of a picture the planes are the part's and all else
+/// is the picture's, so that a node is drawn with as many points in each part that it reaches into.
 struct ViewVolume {
   explicit ViewVolume(const View& view);
 

@@ -25,11 +25,13 @@ ViewConstants viewConstants(const View& view) {
   c.view = view;
   c.projection = projection(view);
   c.planes = frustumPlanes(view);
-  c.rowX = c.projection.rowX - c.projection.rowW * (0.5 * view.width);
-  c.rowY = c.projection.rowY - c.projection.rowW * (0.5 * view.height);
+  const View whole = wholePicture(view);
+  const Projection p = projection(whole);
+  c.rowX = p.rowX - p.rowW * (0.5 * whole.width);
+  c.rowY = p.rowY - p.rowW * (0.5 * whole.height);
   c.pixelsPerMetre = glm::length(glm::dvec3(c.rowY));
   if (!view.orthographic && c.pixelsPerMetre > 0.0) {
-    const double halfDiagonal = 0.5 * std::hypot(view.width, view.height);
+    const double halfDiagonal = 0.5 * std::hypot(whole.width, whole.height);
     c.cornerStretch = std::hypot(1.0, halfDiagonal / c.pixelsPerMetre);
   }
   c.drawable = view.width > 0 && view.height > 0 && finite(view.eye) && finite(c.rowX) && finite(c.rowY) &&
@@ -41,8 +43,11 @@ Viewport viewport(const ViewConstants& c) {
   Viewport v;
   v.width = static_cast<float>(c.view.width);
   v.height = static_cast<float>(c.view.height);
-  v.halfWidth = 0.5f * v.width;
-  v.halfHeight = 0.5f * v.height;
+  const View whole = wholePicture(c.view);
+  v.halfWidth = 0.5f * static_cast<float>(whole.width);
+  v.halfHeight = 0.5f * static_cast<float>(whole.height);
+  v.left = static_cast<float>(c.view.part.left);
+  v.top = static_cast<float>(c.view.part.top);
   v.nearDepth = std::max(static_cast<float>(c.view.nearPlane), std::numeric_limits<float>::min());
   v.perspective = !c.view.orthographic;
   return v;
@@ -81,8 +86,10 @@ bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
   if (depth - radius <= c.view.nearPlane) return true;
   const double w = glm::dot(c.projection.rowW, centre);
   const glm::dvec2 place(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
-  const glm::dvec2 at = glm::dvec2(gaze.at) * glm::dvec2(c.view.width, c.view.height);
-  const double away = glm::distance(place, at) / std::max(c.view.height, 1);
+  const View whole = wholePicture(c.view);
+  const glm::dvec2 at =
+      glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.part.left, c.view.part.top);
+  const double away = glm::distance(place, at) / std::max(whole.height, 1);
   const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
   const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;
   const glm::dvec3 size = hi - lo;

@@ -44,8 +44,9 @@ ViewConstants viewConstants(const View& view);
 
 /// What a kernel needs to turn clip coordinates into pixels.
 struct Viewport {
-  float halfWidth = 0, halfHeight = 0;
-  float width = 0, height = 0;
+  float halfWidth = 0, halfHeight = 0;  ///< of the whole picture
+  float width = 0, height = 0;          ///< of the image
+  float left = 0, top = 0;              ///< of the image in the picture; whole pixels
   float nearDepth = 0;
   bool perspective = true;
 };

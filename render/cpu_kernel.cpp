@@ -94,6 +94,8 @@ class Projector {
         halfWidth_(hn::Set(kFloat, v.port.halfWidth)),
         halfHeight_(hn::Set(kFloat, v.port.halfHeight)),
         width_(hn::Set(kInt, static_cast<std::int32_t>(v.port.width))),
+        corner_(hn::Set(kInt, static_cast<std::int32_t>(v.port.top) * static_cast<std::int32_t>(v.port.width) +
+                                  static_cast<std::int32_t>(v.port.left))),
         view_(v) {
     for (int axis = 0; axis < 3; ++axis) {
       shift_[axis] = v.shift[axis] - Coordinates<kPlanes, kSteps>::kStands[axis];
@@ -116,7 +118,7 @@ class Projector {
     if (view_.clip != nullptr) wanted = hn::And(wanted, inClip(dx, dy, dz));
     if (!view_.inside && hn::AllFalse(kFloat, wanted)) return;
 
-    Ints pixel = hn::Add(hn::Mul(hn::ConvertTo(kInt, row), width_), hn::ConvertTo(kInt, column));
+    Ints pixel = hn::Add(hn::Mul(hn::ConvertTo(kInt, row), width_), hn::Sub(hn::ConvertTo(kInt, column), corner_));
     if constexpr (kWanted != Wanted::all) {
       if (!view_.inside) pixel = hn::IfThenElseZero(hn::RebindMask(kInt, wanted), pixel);
       const Floats front = frontDepth(pixel);
@@ -142,9 +144,11 @@ class Projector {
   }
 
   HWY_INLINE Mask inImage(Floats column, Floats row, Floats depth) const {
-    const Floats none = hn::Zero(kFloat);
-    const Mask inColumns = hn::And(hn::Ge(column, none), hn::Lt(column, hn::Set(kFloat, view_.port.width)));
-    const Mask inRows = hn::And(hn::Ge(row, none), hn::Lt(row, hn::Set(kFloat, view_.port.height)));
+    const Viewport& port = view_.port;
+    const Mask inColumns =
+        hn::And(hn::Ge(column, hn::Set(kFloat, port.left)), hn::Lt(column, hn::Set(kFloat, port.left + port.width)));
+    const Mask inRows =
+        hn::And(hn::Ge(row, hn::Set(kFloat, port.top)), hn::Lt(row, hn::Set(kFloat, port.top + port.height)));
     return hn::And(hn::Ge(depth, hn::Set(kFloat, view_.port.nearDepth)), hn::And(inColumns, inRows));
   }
 
@@ -172,7 +176,7 @@ class Projector {
 
   Row x_, y_, depth_;
   Floats halfWidth_, halfHeight_;
-  Ints width_;
+  Ints width_, corner_;  ///< columns of the image; index that the picture's first pixel would have, negated
   Floats scale_[3], offset_[3];
   int shift_[3];
   const KernelView& view_;

@@ -76,13 +76,16 @@ class HoleFiller {
 FillSizes::FillSizes(const DrawOptions& options, const View& view)
     : least_(std::clamp(options.fill, 1, DrawOptions::kLargestFill) | 1),
       gaze_(options.gaze.on),
-      atX_(options.gaze.at.x * static_cast<float>(view.width)),
-      atY_(options.gaze.at.y * static_cast<float>(view.height)),
-      third_(static_cast<float>(std::max(view.height, 1)) / 3.0f) {}
+      atX_(options.gaze.at.x * static_cast<float>(wholePicture(view).width)),
+      atY_(options.gaze.at.y * static_cast<float>(wholePicture(view).height)),
+      left_(view.part.left),
+      top_(view.part.top),
+      third_(static_cast<float>(std::max(wholePicture(view).height, 1)) / 3.0f) {}
 
 int FillSizes::at(int x, int y) const {
   if (!gaze_) return least_;
-  const float away = std::hypot(static_cast<float>(x) + 0.5f - atX_, static_cast<float>(y) + 0.5f - atY_);
+  const float away =
+      std::hypot(static_cast<float>(x + left_) + 0.5f - atX_, static_cast<float>(y + top_) + 0.5f - atY_);
   return std::max(least_, away < third_ ? 3 : away < 2.0f * third_ ? 5 : 7);
 }
 

@@ -378,15 +378,15 @@ void GlScene::dispatch(const PageRun& run) const {
 
 void GlScene::setViewUniforms() const {
   std::vector<glm::vec4> viewports;
-  std::vector<glm::vec2> lenses;
+  std::vector<glm::vec4> lenses;
   for (const ViewConstants& c : constants_) {
     const strata::Viewport port = viewport(c);
     viewports.emplace_back(port.halfWidth, port.halfHeight, port.width, port.height);
-    lenses.emplace_back(port.nearDepth, port.perspective ? 1.0f : 0.0f);
+    lenses.emplace_back(port.nearDepth, port.perspective ? 1.0f : 0.0f, port.left, port.top);
   }
   const int count = static_cast<int>(constants_.size());
   gl_.Uniform4fv(STRATA_UNIFORM_VIEWPORT, count, &viewports[0].x);
-  gl_.Uniform2fv(STRATA_UNIFORM_LENS, count, &lenses[0].x);
+  gl_.Uniform4fv(STRATA_UNIFORM_LENS, count, &lenses[0].x);
   gl_.Uniform3i(STRATA_UNIFORM_CLIPS, clips_.x, clips_.y, clips_.z);
   if (!variant_.classes) return;
   std::uint32_t words[8] = {};

@@ -58,54 +58,80 @@ void log2All(const float* depth, float* to, std::size_t width) {
   std::copy(rest, rest + (width - x), to + x);
 }
 
-std::uint32_t scaled(std::uint32_t colour, float factor) {
-  std::uint32_t result = colour & 0xff000000u;
-  for (int shift = 0; shift < 24; shift += 8) {
-    const float channel = static_cast<float>(colour >> shift & 255u) * factor;
-    result |= static_cast<std::uint32_t>(channel + 0.5f) << shift;
-  }
-  return result;
+constexpr hn::ScalableTag<float> kFloat{};
+constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
+
+/// Where one vector of pixels finds its depths: in the rows above, here and below, to the left, here and to the right.
+struct Neighbours {
+  const float* at[3][3];
+};
+
+/// Shades one vector of pixels. All pixels go through here, so that a pixel's colour does not depend on its column.
+HWY_INLINE void shadeVector(const Neighbours& near, float gain, std::uint32_t* colours) {
+  const hn::RebindToUnsigned<decltype(kFloat)> word;
+  const hn::RebindToSigned<decltype(kFloat)> integer;
+  const auto here = hn::LoadU(kFloat, near.at[1][1]);
+  const auto none = hn::Zero(kFloat);
+  const auto drawn = hn::Lt(here, hn::Set(kFloat, std::numeric_limits<float>::infinity()));
+  if (hn::AllFalse(kFloat, drawn)) return;
+  const auto ahead = [&](const float* at) { return hn::Max(none, here - hn::LoadU(kFloat, at)); };
+  auto inFront = ahead(near.at[1][0]) + ahead(near.at[1][2]);
+  for (const auto& row : {near.at[0], near.at[2]}) inFront = inFront + ahead(row[0]) + ahead(row[1]) + ahead(row[2]);
+  const auto factor = hn::Exp(kFloat, hn::Max(hn::Set(kFloat, -87.0f), none - inFront * hn::Set(kFloat, gain)));
+  const auto colour = hn::LoadU(word, colours);
+  auto result = hn::And(colour, hn::Set(word, 0xff000000u));
+  const auto channel = [&](auto shifted) {
+    const auto value = hn::ConvertTo(kFloat, hn::BitCast(integer, hn::And(shifted, hn::Set(word, 255u))));
+    return hn::BitCast(word, hn::ConvertTo(integer, value * factor + hn::Set(kFloat, 0.5f)));
+  };
+  result = hn::Or(result, channel(colour));
+  result = hn::Or(result, hn::ShiftLeft<8>(channel(hn::ShiftRight<8>(colour))));
+  result = hn::Or(result, hn::ShiftLeft<16>(channel(hn::ShiftRight<16>(colour))));
+  hn::StoreU(hn::IfThenElse(hn::RebindMask(word, drawn), result, colour), word, colours);
 }
 
-void shadeOne(const EdlRows& r, std::size_t x, float gain, std::uint32_t* colours) {
-  if (std::isinf(r.here[x])) return;
-  const std::size_t columns[3] = {x - std::min(x, r.apart), x, std::min(x + r.apart, r.width - 1)};
-  float inFront = 0.0f;
-  for (const float* row : {r.above, r.here, r.below})
-    for (const std::size_t column : columns) inFront += std::max(0.0f, r.here[x] - row[column]);
-  if (inFront > 0.0f) colours[x] = scaled(colours[x], std::exp(-inFront * gain));
+/// At most one vector of pixels, some of whose neighbours may lie beyond the row's ends: the ends stand in for them.
+void shadeAtEnd(const EdlRows& r, std::size_t begin, std::size_t end, float gain, std::uint32_t* colours) {
+  float depths[3][3][kMostLanes];
+  std::uint32_t some[kMostLanes] = {};
+  Neighbours near;
+  const float* const rows[3] = {r.above, r.here, r.below};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t side = 0; side < 3; ++side) {
+      near.at[row][side] = depths[row][side];
+      std::fill_n(depths[row][side], kMostLanes, std::numeric_limits<float>::infinity());
+      for (std::size_t x = begin; x < end; ++x) {
+        const std::size_t columns[3] = {x - std::min(x, r.apart), x, std::min(x + r.apart, r.width - 1)};
+        depths[row][side][x - begin] = rows[row][columns[side]];
+      }
+    }
+  std::copy(colours + begin, colours + end, some);
+  shadeVector(near, gain, some);
+  std::copy(some, some + (end - begin), colours + begin);
 }
 
 void shade(const EdlRows& r, std::size_t begin, std::size_t end, float gain, std::uint32_t* colours) {
-  const hn::ScalableTag<float> tag;
-  const hn::RebindToUnsigned<decltype(tag)> word;
-  const hn::RebindToSigned<decltype(tag)> integer;
-  const std::size_t lanes = hn::Lanes(tag);
+  const std::size_t lanes = hn::Lanes(kFloat);
   const std::size_t safeEnd = std::min(end, r.width - std::min(r.width, r.apart));
   std::size_t x = begin;
-  for (; x < std::min(end, r.apart); ++x) shadeOne(r, x, gain, colours);
-  for (; x + lanes <= safeEnd; x += lanes) {
-    const auto here = hn::LoadU(tag, r.here + x);
-    const auto none = hn::Zero(tag);
-    const auto drawn = hn::Lt(here, hn::Set(tag, std::numeric_limits<float>::infinity()));
-    if (hn::AllFalse(tag, drawn)) continue;
-    const auto ahead = [&](const float* row, std::size_t at) { return hn::Max(none, here - hn::LoadU(tag, row + at)); };
-    auto inFront = ahead(r.here, x - r.apart) + ahead(r.here, x + r.apart);
-    for (const float* row : {r.above, r.below})
-      inFront = inFront + ahead(row, x - r.apart) + ahead(row, x) + ahead(row, x + r.apart);
-    const auto factor = hn::Exp(tag, hn::Max(hn::Set(tag, -87.0f), none - inFront * hn::Set(tag, gain)));
-    const auto colour = hn::LoadU(word, colours + x);
-    auto result = hn::And(colour, hn::Set(word, 0xff000000u));
-    const auto channel = [&](auto shifted) {
-      const auto value = hn::ConvertTo(tag, hn::BitCast(integer, hn::And(shifted, hn::Set(word, 255u))));
-      return hn::BitCast(word, hn::ConvertTo(integer, value * factor + hn::Set(tag, 0.5f)));
-    };
-    result = hn::Or(result, channel(colour));
-    result = hn::Or(result, hn::ShiftLeft<8>(channel(hn::ShiftRight<8>(colour))));
-    result = hn::Or(result, hn::ShiftLeft<16>(channel(hn::ShiftRight<16>(colour))));
-    hn::StoreU(hn::IfThenElse(hn::RebindMask(word, drawn), result, colour), word, colours + x);
+  for (std::size_t next; x < std::min(end, r.apart); x = next) {
+    next = std::min({x + lanes, end, r.apart});
+    shadeAtEnd(r, x, next, gain, colours);
   }
-  for (; x < end; ++x) shadeOne(r, x, gain, colours);
+  for (; x + lanes <= safeEnd; x += lanes) {
+    Neighbours near;
+    const float* const rows[3] = {r.above + x, r.here + x, r.below + x};
+    for (std::size_t row = 0; row < 3; ++row) {
+      near.at[row][0] = rows[row] - r.apart;
+      near.at[row][1] = rows[row];
+      near.at[row][2] = rows[row] + r.apart;
+    }
+    shadeVector(near, gain, colours + x);
+  }
+  for (std::size_t next; x < end; x = next) {
+    next = std::min(x + lanes, end);
+    shadeAtEnd(r, x, next, gain, colours);
+  }
 }
 
 }  // namespace

@@ -45,7 +45,9 @@ class FillSizes {
  private:
   int least_ = 1;
   bool gaze_ = false;
-  float atX_ = 0.0f, atY_ = 0.0f, third_ = 1.0f;  ///< pixels
+  float atX_ = 0.0f, atY_ = 0.0f;  ///< pixels of the whole picture
+  int left_ = 0, top_ = 0;         ///< of the image in it
+  float third_ = 1.0f;
 };
 
 /// Depth-aware dilation: a pixel that is empty, or lies more than kBlendDepth behind the nearest pixel of the window

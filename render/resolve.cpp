@@ -162,10 +162,11 @@ void pointAtPixels(VisibilityBuffer& buffer, std::size_t begin, std::size_t end)
 
 /// Fills row y of the frame from the buffer, whose pixels say where their colour and id stand in `colours` and `ids`;
 /// with `ids` null they hold their ids, and the colours are in the frame.
-void finishRow(const VisibilityBuffer& buffer, const DrawOptions& options, std::size_t y, const std::uint32_t* colours,
-               const std::uint32_t* ids, Frame& frame) {
+void finishRow(const VisibilityBuffer& buffer, const View& view, const DrawOptions& options, std::size_t y,
+               const std::uint32_t* colours, const std::uint32_t* ids, Frame& frame) {
   const auto width = static_cast<std::size_t>(buffer.width);
-  const std::uint32_t background = backgroundColour(options, static_cast<int>(y), buffer.height);
+  const std::uint32_t background =
+      backgroundColour(options, view.part.top + static_cast<int>(y), wholePicture(view).height);
   for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
     const std::uint32_t from = pixelId(buffer.pixels[i]);
     frame.depth[i] = pixelDepth(buffer.pixels[i]);
@@ -198,7 +199,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
       for (std::size_t y = first; y < end; ++y) {
         colouring.colour(y * width, (y + 1) * width, frame.colour.data() + y * width);
-        finishRow(buffer, options, y, nullptr, nullptr, frame);
+        finishRow(buffer, view, options, y, nullptr, nullptr, frame);
       }
     });
   } else {
@@ -212,7 +213,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
     fillHoles(buffer, fills, pool);
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
       for (std::size_t y = first; y < end; ++y)
-        finishRow(buffer, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
+        finishRow(buffer, view, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
     });
   }
   if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);

@@ -5,7 +5,7 @@ layout(std430, binding = STRATA_BINDING_PLACES) readonly buffer Places { BatchPl
 layout(std430, binding = STRATA_BINDING_GRIDS) readonly buffer Grids { GridRecord grids[]; };
 
 layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewports[STRATA_VIEWS];
-layout(location = STRATA_UNIFORM_LENS) uniform vec2 lenses[STRATA_VIEWS];
+layout(location = STRATA_UNIFORM_LENS) uniform vec4 lenses[STRATA_VIEWS];
 layout(location = STRATA_UNIFORM_CLASSES) uniform uint classes[8];
 layout(location = STRATA_UNIFORM_CLIPS) uniform ivec3 clips;
 
@@ -46,7 +46,7 @@ vec3 gridSteps(Seen seen, uvec3 words) {
   return vec3(ivec3(cell << seen.left >> seen.right) + seen.offset);
 }
 
-/// Column and row in pixels, depth in metres.
+/// Column and row in pixels of the whole picture, depth in metres.
 vec3 project(Seen seen, int view, vec3 d) {
   float depth = along(seen.depth, d);
   float inverse = lenses[view].y != 0.0 ? 1.0 / depth : 1.0;
@@ -55,8 +55,8 @@ vec3 project(Seen seen, int view, vec3 d) {
 }
 
 bool inImage(int view, vec3 place) {
-  return place.z >= lenses[view].x && all(greaterThanEqual(place.xy, vec2(0.0))) &&
-         all(lessThan(place.xy, viewports[view].zw));
+  return place.z >= lenses[view].x && all(greaterThanEqual(place.xy, lenses[view].zw)) &&
+         all(lessThan(place.xy, lenses[view].zw + viewports[view].zw));
 }
 
 bool inClipBox(int grid, int i, vec3 d) {

@@ -29,13 +29,14 @@ int placePoint(int view, uvec3 words, out uint depth) {
 #if STRATA_VIEWS > 1
   if (seen[view].planes == 0) return -1;
 #endif
-  int row = int(place.y);
+  int row = int(place.y) - int(lenses[view].w);
   if (row < pixelsOfView[view].y || row >= pixelsOfView[view].z) return -1;
 #if STRATA_CLIP
   if (seen[view].grid >= 0 && !keptByClip(seen[view].grid, d)) return -1;
 #endif
   depth = floatBitsToUint(place.z);
-  return pixelsOfView[view].x + (row - pixelsOfView[view].y) * int(viewports[view].z) + int(place.x);
+  return pixelsOfView[view].x + (row - pixelsOfView[view].y) * int(viewports[view].z) + int(place.x) -
+         int(lenses[view].z);
 }
 
 /// What is to be done with a point of the batch; true where it may be the one that its pixel shows.

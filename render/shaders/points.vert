@@ -30,5 +30,5 @@ void main() {
   id = batch.firstId + point;
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside
   if (inImage(0, place) && kept(batch, seen, point, d))
-    gl_Position = vec4((floor(place.xy) + 0.5) / viewports[0].xy - 1.0, place.z * kDepthScale, 1.0);
+    gl_Position = vec4((floor(place.xy) - lenses[0].zw + 0.5) / (0.5 * viewports[0].zw) - 1.0, place.z * kDepthScale, 1.0);
 }

@@ -31,8 +31,8 @@ using uvec4 = glm::uvec4;
 #define STRATA_BINDING_VIEWS 4  // ViewRecord
 #define STRATA_BINDING_RUNS 5   // DispatchRecord
 
-#define STRATA_UNIFORM_VIEWPORT 0       // per view: half width, half height, width, height in pixels
-#define STRATA_UNIFORM_LENS 4           // per view: near plane in metres, 1 for perspective or 0
+#define STRATA_UNIFORM_VIEWPORT 0       // per view: half the picture's width and height, width and height of the image
+#define STRATA_UNIFORM_LENS 4           // per view: near plane, 1 for perspective or 0, corner of the image in the picture
 #define STRATA_UNIFORM_PIXELS 8         // per view: first pixel in the buffers, first row and end row that they hold
 #define STRATA_UNIFORM_FIRST_RECORD 12  // of the first work-group
 #define STRATA_UNIFORM_PASS 13          // compute32: 0 is the depth pass, 1 the index pass
