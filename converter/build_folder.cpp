@@ -126,18 +126,22 @@ void BuildFolder::putBackBuiltPoints() {
 }
 
 void BuildFolder::publish() {
-  removeFiles(path_, std::span(kWorkFiles).subspan(1));
+  removeFiles(path_, std::span(kWorkFiles).subspan(2));  // the journal stays until the name is there
   syncFolder(path_);
   if (isTaken(output_)) {
-    checkOutput(output_, force_);
+    try {
+      checkOutput(output_, force_);
+    } catch (const Error& taken) {
+      throw Error(std::string(taken.what()) + "; the finished store waits in " + path_ + " for --resume");
+    }
     if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, output_.c_str(), RENAME_EXCHANGE) != 0)
       throw posixError(output_, "replacing", errno);
   } else if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, output_.c_str(), RENAME_NOREPLACE) != 0) {
     // Some file systems know plain renames only; those do not replace a folder with anything in it either.
     if (errno != EINVAL || ::rename(path_.c_str(), output_.c_str()) != 0) throw posixError(output_, "renaming", errno);
   }
-  std::error_code ignored;
-  fs::remove(output_ + "/" + kLockFile, ignored);
+  kept_ = false;
+  removeFiles(output_, std::span(kWorkFiles).first(2));
   syncFolder(output_);
   syncFolder(parentOf(output_).string());
 }

@@ -30,8 +30,8 @@ class BuildFolder {
   void putBackBuiltPoints();
   /// From now on the destructor leaves the folder for another conversion to resume.
   void keep(bool kept = true) { kept_ = kept; }
-  /// Gives the folder its final name in one step. Throws, and leaves what is there alone, when something that may not
-  /// be replaced has appeared under that name.
+  /// Gives the folder its final name in one step, and ends keep(). Throws, and leaves what is there alone, when
+  /// something that may not be replaced has appeared under that name.
   void publish();
 
  private:

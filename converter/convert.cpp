@@ -228,7 +228,6 @@ class Session {
   Session(const Sources& sources, const ConvertOptions& options)
       : folder(options.output, options.force, options.resume) {
     folder.keep(options.resume);  // what cannot be resumed stays as it is
-    folder.putBackBuiltPoints();
     journal.emplace(folder.journalPath());
     JournalHead head{newSpillPath(options), termsOf(sources, options)};
     if (journal->found().empty()) {
@@ -240,6 +239,13 @@ class Session {
     }
     headEnd = journal->found().empty() ? journal->bytes() : journal->found()[0].offset + journal->found()[0].bytes;
     const std::string path = head.spillPath.empty() ? folder.spillPath() : head.spillPath;
+    complete = !journal->found().empty() && journal->found().back().kind == RecordKind::complete;
+    if (complete) {
+      std::error_code ignored;
+      fs::remove(path, ignored);
+      return;
+    }
+    folder.putBackBuiltPoints();
     const bool begun = journal->found().size() > 1 || fs::exists(path);
     spill.emplace(path, begun ? Spill::Open::existing : Spill::Open::create);
     if (begun) dropStrays({*spill, *journal});
@@ -257,19 +263,27 @@ class Session {
   std::optional<Journal> journal;
   std::optional<Spill> spill;
   std::uint64_t headEnd = 0;  ///< of the journal's first record
+  bool complete = false;      ///< nothing is left to do but publishing; there is no spill
 };
 
-void countLevels(const Hierarchy& hierarchy, ConvertReport& report) {
-  for (const NodeRecord& node : hierarchy.nodes) {
+/// What the report says of the store that has been published.
+void reportStore(const Store& store, ConvertReport& report) {
+  report.points = store.info().points;
+  report.nodes = store.info().nodes;
+  report.skipped = store.info().skipped;
+  for (const NodeRecord& node : store.hierarchy().nodes) {
     const auto level = static_cast<std::size_t>(NodeKey{node.key}.level());
     report.nodesByLevel.resize(std::max(report.nodesByLevel.size(), level + 1));
     report.pointsByLevel.resize(report.nodesByLevel.size());
     ++report.nodesByLevel[level];
     report.pointsByLevel[level] += node.pointCount;
   }
+  report.planes = planeSizes(store);
+  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
+    report.outputBytes += fs::file_size(store.path() + "/" + file);
 }
 
-/// All stages from reading the points on.
+/// All stages from reading the points on; the store is whole then, but not published.
 void buildStore(const Sources& sources, const ConvertOptions& options, const ConvertControl& control, Session& session,
                 StageClock& clock, ConvertReport& report) {
   const Workspace work = session.workspace();
@@ -309,17 +323,8 @@ void buildStore(const Sources& sources, const ConvertOptions& options, const Con
   }
   writeStoreFiles(session.folder.path(), info, hierarchy, fs::file_size(pointsPath));
   report.tempPeakBytes = std::max(work.spill.peakBytes() + work.journal.bytes(), normalBytes);
+  work.journal.append(RecordKind::complete, {});
   work.spill.discard();
-  session.folder.publish();
-  clock.end();
-
-  report.points = info.points;
-  report.nodes = info.nodes;
-  report.skipped = info.skipped;
-  countLevels(hierarchy, report);
-  report.planes = planeSizes(Store(options.output));
-  for (const char* file : {kInfoFile, kHierarchyFile, kPointsFile})
-    report.outputBytes += fs::file_size(options.output + "/" + file);
 }
 
 /// Builds the store of sources that are open; `clock` has begun to time the survey.
@@ -339,11 +344,15 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
 
   Session session(sources, options);
   try {
-    buildStore(sources, options, control, session, clock, report);
+    if (!session.complete) buildStore(sources, options, control, session, clock, report);
   } catch (const Stopped&) {
     session.keep();
     throw;
   }
+  session.folder.keep();  // a finished store is not thrown away, whatever its name runs into
+  session.folder.publish();
+  clock.end();
+  reportStore(Store(options.output), report);
 }
 
 /// What was asked, with everything said that had a default; refuses what cannot be written to.

@@ -15,6 +15,7 @@ enum class RecordKind : std::uint32_t {
   runs = 3,      ///< points of some input (or of a cell that is split) that are now in the temporary file
   split = 4,     ///< a cell that is about to be split, and how
   chunk = 5,     ///< a chunk whose nodes are in points.bin
+  complete = 6,  ///< the store's files are whole and durable; only their name is missing
 };
 
 /// The log of a conversion: records that are only ever appended, each with its checksum, so that a conversion that

@@ -79,8 +79,8 @@ struct ConvertControl {
 };
 
 /// Converts the inputs to a store. Nothing carries the final name before it is complete and durable. Whatever was begun
-/// is removed when an Error is thrown, but stays for options.resume when that is Stopped. Same inputs and options give
-/// the same bytes for any number of threads.
+/// is removed when an Error is thrown, but stays for options.resume when that is Stopped or when the store is finished
+/// and only its name is taken. Same inputs and options give the same bytes for any number of threads.
 ConvertReport convert(const ConvertOptions& options, const ConvertControl& control);
 /// The same for scans that are open already; options.inputs is not looked at.
 ConvertReport convert(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& options,

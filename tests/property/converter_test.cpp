@@ -368,6 +368,40 @@ TEST(BuildFolder, DoesNotReplaceWhatAppearedUnderItsFinalName) {
   EXPECT_FALSE(fs::exists(output + ".building"));
 }
 
+TEST(Converter, AFinishedStoreWhoseNameIsTakenIsKeptForResume) {
+  const test::TempFolder folder;
+  const fs::path output = folder / "a.strata", building = folder / "a.strata.building", temp = folder / "temp";
+  fs::create_directory(temp);
+  ConvertOptions options;
+  options.inputs = {"synthetic:plane?points=20000"};
+  options.output = output.string();
+  options.tempFolder = temp.string();
+  ConvertControl control;
+  control.progress = [&](const Progress& progress) {
+    if (progress.stage != std::string(stage::kWrite)) return;
+    fs::create_directory(output);
+    std::ofstream(output / "scan.las") << "precious";
+  };
+  EXPECT_THROW(convert(options, control), Error);
+  EXPECT_TRUE(fs::exists(output / "scan.las"));
+  EXPECT_TRUE(fs::is_empty(temp));
+  const std::string points = bytesOf(building / kPointsFile);
+  ASSERT_FALSE(points.empty());
+
+  options.resume = true;
+  EXPECT_THROW(convert(options, ConvertControl{}), Error);  // still taken
+  fs::remove_all(output);
+  options.nodePoints = 2000;
+  EXPECT_THROW(convert(options, ConvertControl{}), Error);  // other terms
+  options.nodePoints = ConvertOptions{}.nodePoints;
+  const ConvertReport report = convert(options, ConvertControl{});
+  EXPECT_EQ(report.points, 20000u);
+  EXPECT_EQ(bytesOf(output / kPointsFile), points);
+  EXPECT_FALSE(fs::exists(building));
+  EXPECT_FALSE(fs::exists(output / "journal"));
+  EXPECT_EQ(verifyStore(Store(output.string())).badNodes, 0u);
+}
+
 TEST(BuildFolder, ForceReplacesAStoreButNoFolderWithAnythingElseInIt) {
   const test::TempFolder folder;
   const fs::path output = folder / "a.strata";
