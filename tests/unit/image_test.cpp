@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <random>
 
@@ -43,6 +45,34 @@ TEST(Image, TheFileHoldsTheEncodedBytes) {
   EXPECT_EQ(bytes, encodePng(image));
   ASSERT_GT(bytes.size(), 4u);
   EXPECT_EQ(std::string(bytes.begin() + 1, bytes.begin() + 4), "PNG");
+}
+
+TEST(Image, APngWrittenRowByRowGivesBackEveryPixel) {
+  const test::TempFolder folder;
+  const std::string path = (folder / "rows.png").string();
+  for (const int atOnce : {1, 3, 7, 100}) {
+    const Image image = noise(53, 21, static_cast<unsigned>(atOnce));
+    PngWriter writer(path, image.width, image.height);
+    for (int y = 0; y < image.height; y += atOnce)
+      writer.add(&image.pixels[static_cast<std::size_t>(y * image.width)], std::min(atOnce, image.height - y));
+    EXPECT_FALSE(std::filesystem::exists(path));
+    writer.finish();
+    EXPECT_EQ(readPng(path).pixels, image.pixels);
+    std::filesystem::remove(path);
+  }
+}
+
+TEST(Image, APngThatIsNotFinishedLeavesNothingBehind) {
+  const test::TempFolder folder;
+  const Image image = noise(40, 40, 2);
+  { PngWriter(((folder / "never.png").string()), 40, 40).add(image.pixels.data(), 20); }
+  PngWriter early((folder / "early.png").string(), 40, 40);
+  early.add(image.pixels.data(), 20);
+  EXPECT_THROW(early.finish(), Error);
+  EXPECT_THROW(PngWriter("/nowhere/x.png", 4, 4), Error);
+  EXPECT_FALSE(std::filesystem::exists(folder / "never.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "never.png.building"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "early.png"));
 }
 
 TEST(Image, ReadingWhatIsNoPngNamesTheFile) {
