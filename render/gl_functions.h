@@ -72,7 +72,6 @@ namespace strata {
   X(void, Uniform1uiv, (int location, int count, const unsigned* values))                                        \
   X(void, Uniform1ui, (int location, unsigned x))                                                                \
   X(void, Uniform2f, (int location, float x, float y))                                                           \
-  X(void, Uniform2fv, (int location, int count, const float* values))                                            \
   X(void, Uniform3i, (int location, int x, int y, int z))                                                        \
   X(void, Uniform3iv, (int location, int count, const int* values))                                              \
   X(void, Uniform3ui, (int location, unsigned x, unsigned y, unsigned z))                                        \

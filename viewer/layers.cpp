@@ -111,6 +111,7 @@ StreamerStats Layers::stats() const {
     sum.cacheMisses += s.cacheMisses;
     sum.evictions += s.evictions;
     sum.refusals += s.refusals;
+    sum.overCapacity += s.overCapacity;
     sum.queueLength += s.queueLength;
     sum.residentBytes += s.residentBytes;
     sum.residentNodes += s.residentNodes;

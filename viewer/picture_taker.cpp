@@ -45,8 +45,9 @@ PictureTaker::PictureTaker(PictureOrder order, Layers& layers, Rasterizer& raste
   if (order_.draw.colour == ColourMode::overdraw &&
       static_cast<std::uint64_t>(order_.view.width) * static_cast<std::uint64_t>(order_.view.height) >
           kMostOverdrawPixels)
-    throw Error(order_.file, "is too large for an overdraw picture, which is drawn in one piece (expected at most "
-                             "4096 x 4096 pixels)");
+    throw Error(order_.file,
+                "is too large for an overdraw picture, which is drawn in one piece (expected at most "
+                "4096 x 4096 pixels)");
   layers_.setSelection(selectionFor(order_));
   nextRow();
 }

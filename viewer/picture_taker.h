@@ -56,7 +56,7 @@ class PictureTaker {
   Layers& layers_;
   Rasterizer& rasterizer_;
   PngWriter png_;
-  Image row_;               ///< of parts; its first row is rowTop_
+  Image row_;  ///< of parts; its first row is rowTop_
   int rowTop_ = 0;
   std::vector<Part> open_;  ///< of the row, the next one last
   Frame frame_;

@@ -44,9 +44,13 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
   throw posixError(path_, "starting ffmpeg", failure);
 }
 
-VideoWriter::~VideoWriter() {
+VideoWriter::~VideoWriter() { abandon(); }
+
+void VideoWriter::abandon() {
   if (socket_ >= 0) ::close(socket_);
   if (process_ > 0) ::waitpid(process_, nullptr, 0);
+  socket_ = -1;
+  process_ = -1;
 }
 
 void VideoWriter::add(const Image& image) {

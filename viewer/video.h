@@ -18,6 +18,8 @@ class VideoWriter {
   void add(const Image& image);
   /// Waits until the film is written. Throws Error when ffmpeg failed.
   void finish();
+  /// Ends ffmpeg without more.
+  void abandon();
 
  private:
   [[noreturn]] void fail();

@@ -1,0 +1,52 @@
+#include "viewer/film_taker.h"
+
+#include <cstdio>
+#include <utility>
+
+#include "viewer/drawing.h"
+
+namespace strata {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{120'000};  // for one frame's full detail
+
+}  // namespace
+
+FilmTaker::FilmTaker(FilmOrder order, Layers& layers, Rasterizer& rasterizer)
+    : order_(std::move(order)),
+      clock_(order_.path),
+      frames_(order_.path.frames()),
+      layers_(layers),
+      rasterizer_(rasterizer),
+      video_(order_.file, order_.width, order_.height, order_.path.fps) {}
+
+FilmTaker::~FilmTaker() {
+  if (finished_) return;
+  video_.abandon();
+  std::remove(order_.file.c_str());
+}
+
+bool FilmTaker::goOn(std::chrono::milliseconds patience) {
+  const auto now = std::chrono::steady_clock::now();
+  const double t = clock_.keyTime(order_.path.keys.front().t + index_ / order_.path.fps);
+  const View view = viewAt(order_.path, t, order_.width, order_.height);
+  if (!asked_) {
+    layers_.setView(view);
+    giveUpAt_ = now + kLongestWait;
+    asked_ = true;
+  }
+  if (!layers_.waitUntilComplete(patience) && now < giveUpAt_) return false;
+  asked_ = false;
+  const RenderList& list = layers_.beginFrame();
+  DrawStats stats;
+  do {
+    stats = rasterizer_.draw(list, view, order_.draw, frame_);
+  } while (stats.nodesNotUploaded > 0 && stats.bytesUploaded > 0);
+  video_.add(imageOf(frame_));
+  if (++index_ < frames_) return false;
+  video_.finish();
+  finished_ = true;
+  return true;
+}
+
+}  // namespace strata
