@@ -9,12 +9,13 @@
 #include "render/rasterizer.h"
 #include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
+#include "viewer/suite.h"
 
 namespace strata {
 
 /// The command line of strata-bench.
 struct BenchOptions {
-  enum class Command { run, makePath, compare };
+  enum class Command { run, makePath, compare, suite };
 
   Command command = Command::run;
   std::string store;
@@ -36,6 +37,8 @@ struct BenchOptions {
   int screenshotEvery = 0;  ///< frames; 0 = none
   std::string video;        ///< file for a film of the flight; empty = none
   bool json = false;
+
+  SuiteOptions suite;
 
   std::string reportA, reportB;                                ///< compare: folders or report.json files
   std::string comparison;                                      ///< compare: HTML file; empty = none

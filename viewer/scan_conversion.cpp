@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "viewer/converter_program.h"
 #include "viewer/html_text.h"
 #include "viewer/window.h"
 
@@ -25,14 +26,6 @@ namespace fs = std::filesystem;
 constexpr double kPoll = 0.1;  // seconds
 
 enum class Answer { open, convert, leave };
-
-std::string converterPath() {
-  std::error_code failure;
-  const fs::path self = fs::read_symlink("/proc/self/exe", failure);
-  const fs::path converter = self.parent_path() / "strata-convert";
-  if (failure || !fs::exists(converter)) throw Error(converter.string(), "the converter is missing");
-  return converter.string();
-}
 
 /// One frame of the window that asks and shows. `said` is empty before the conversion has begun.
 Answer drawQuestion(Window& window, const std::string& scan, const std::string& store, const std::string& said,
@@ -83,7 +76,7 @@ bool convertOne(const ViewerOptions& options, const std::string& scan, const std
 }  // namespace
 
 ScanConversion::ScanConversion(const std::string& scan, const std::string& store) {
-  const std::string converter = converterPath();
+  const std::string converter = converterProgram();
   std::vector<const char*> arguments{"strata-convert", scan.c_str(), "-o",   store.c_str(),
                                      "--resume",       "--json",     nullptr};
   int ends[2];

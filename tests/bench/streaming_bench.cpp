@@ -1,6 +1,5 @@
-// What streaming costs and saves, as tables of docs/benchmarks.md:
-//
-// streaming_bench occlusion STORE VIEWS.json...   Kanzok 2015, Table 3: each view with and without occlusion
+// What streaming costs and saves, as tables of docs/benchmarks.md (Table 3 of Kanzok 2015: strata-bench --suite
+// kanzok):
 //
 // streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken
 //
@@ -128,61 +127,6 @@ Flight fly(std::shared_ptr<const Store> store, const CameraPath& path, const Str
   flight.lastDetailMs = msSince(start);
   flight.stats = streamer.stats();
   return flight;
-}
-
-// --- occlusion
-
-struct Complete {
-  double ms = 0.0, frameMs = 0.0;
-  std::size_t nodes = 0;
-  std::uint64_t points = 0;
-  StreamerStats stats;
-};
-
-Complete complete(const std::string& storePath, const View& view, bool occlusion) {
-  const auto store = openWith(storePath, {.latency = 1ms, .bytesPerSecond = 100e6});
-  StreamerOptions options;
-  options.selection.occlusion.enabled = occlusion;
-  options.cacheBytes = std::uint64_t{4} << 30;
-  options.selection.pointBudget = SelectionOptions::kMaxPointBudget;
-  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(Backend::cpu);
-  const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
-  Streamer streamer(store, options);
-  Complete result;
-  const auto start = Clock::now();
-  streamer.setView(view);
-  streamer.waitUntilComplete(300s);
-  result.ms = msSince(start);
-  const RenderList& list = streamer.beginFrame();
-  result.nodes = list.items.size();
-  result.points = list.pointCount;
-  std::vector<double> times;
-  Frame frame;
-  for (int i = 0; i < 7; ++i) {
-    const auto began = Clock::now();
-    rasterizer->draw(list, view, draw, frame);
-    times.push_back(msSince(began));
-  }
-  result.frameMs = percentile(times, 50.0);
-  result.stats = streamer.stats();
-  return result;
-}
-
-/// The views are the keys of the paths.
-void occlusion(const std::string& store, const CameraPath& views) {
-  std::printf(
-      "| view | occlusion | nodes drawn | points | frame ms | nodes loaded | MB read | complete after ms | LOD ms |\n");
-  std::printf("|---|---|---|---|---|---|---|---|---|\n");
-  for (std::size_t i = 0; i < views.keys.size(); ++i) {
-    const View view = viewAt(views, views.keys[i].t, kPicture.width, kPicture.height);
-    for (const bool on : {true, false}) {
-      const Complete c = complete(store, view, on);
-      std::printf("| %zu | %s | %zu | %.2f M | %.1f | %llu | %.1f | %.0f | %.2f |\n", i + 1, on ? "with" : "without",
-                  c.nodes, 1e-6 * static_cast<double>(c.points), c.frameMs,
-                  static_cast<unsigned long long>(c.stats.nodesLoaded), 1e-6 * static_cast<double>(c.stats.bytesRead),
-                  c.ms, c.stats.lodMsMean);
-    }
-  }
 }
 
 // --- flights
@@ -335,7 +279,6 @@ int run(const std::vector<std::string>& arguments) {
     loaders(arguments[1]);
   } else if (arguments.size() == 3) {
     const CameraPath path = readCameraPath(arguments[2]);
-    if (what == "occlusion") occlusion(arguments[1], path);
     if (what == "slow") slow(arguments[1], path);
     if (what == "ahead") ahead(arguments[1], path);
     if (what == "planes") planes(arguments[1], path);

@@ -158,5 +158,57 @@ TEST_F(Bench, WithoutATraceThereIsNone) {
   EXPECT_FALSE(std::filesystem::exists(file("untraced") / "trace.json"));
 }
 
+// --- the papers' tables
+
+/// Every table's rows, without the header and the line under it; each must have as many cells as its header.
+std::vector<std::vector<std::string>> tableRows(const std::string& markdown) {
+  std::vector<std::vector<std::string>> rows;
+  std::size_t columns = 0;
+  for (const std::string& line : linesOf(markdown)) {
+    if (!line.starts_with("| ")) {
+      if (!line.starts_with("|-")) columns = 0;
+      continue;
+    }
+    std::vector<std::string> cells;
+    std::istringstream in(line.substr(2));
+    for (std::string cell; std::getline(in, cell, '|');)
+      cells.push_back(cell.substr(0, cell.find_last_not_of(' ') + 1));
+    if (columns == 0)
+      columns = cells.size();
+    else
+      rows.push_back(cells);
+    EXPECT_EQ(cells.size(), columns) << line;
+  }
+  return rows;
+}
+
+struct Suite {
+  const char* name;
+  const char* scale;
+  std::size_t rows;                   ///< at least
+  std::vector<std::string> hardware;  ///< of the paper
+};
+
+TEST_F(Bench, EachSuitePrintsItsTablesBesideThePapers) {
+  for (const Suite& suite : {Suite{"kanzok", "1e-4", 24, {"GTX 680"}}, Suite{"schuetz", "2e-4", 40, {"RTX 3090"}},
+                             Suite{"guenther", "2e-4", 14, {"HD 7970"}}}) {
+    const Finished done = runProgram(
+        "strata-bench", {"--suite", suite.name, "--suite-scale", suite.scale, "--size", "160x90", "--backend", "cpu"});
+    ASSERT_EQ(done.exitCode, 0) << done.err;
+    const auto rows = tableRows(done.out);
+    EXPECT_GE(rows.size(), suite.rows) << done.out;
+    const auto ofPaper = std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row[0][0] == '*'; });
+    EXPECT_GE(ofPaper, suite.name == std::string("guenther") ? 1 : 10) << done.out;
+    for (const std::string& hardware : suite.hardware) EXPECT_NE(done.out.find(hardware), std::string::npos);
+    EXPECT_EQ(done.out.find("nan"), std::string::npos) << done.out;
+    EXPECT_EQ(done.out.find("inf "), std::string::npos) << done.out;
+  }
+}
+
+TEST_F(Bench, ASuiteTakesNoStore) {
+  expectUsageError(runProgram("strata-bench", {city().string(), "--suite", "kanzok"}));
+  expectUsageError(runProgram("strata-bench", {"--suite", "nobody"}));
+}
+
 }  // namespace
 }  // namespace strata::test

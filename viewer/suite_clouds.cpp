@@ -1,13 +1,13 @@
-#include "tests/bench/bench_clouds.h"
+#include "viewer/suite_clouds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
+#include "core/make_node.h"
 #include "render/thread_pool.h"
-#include "tests/support/synthetic_nodes.h"
 
-namespace strata::bench {
+namespace strata::suite {
 namespace {
 
 constexpr double kGridStep = 0.001;  ///< metres
@@ -96,13 +96,32 @@ RenderList makeNodes(std::uint64_t count, std::uint32_t nodePoints,
       std::vector<glm::dvec3> points;
       for (std::uint64_t i = n * nodePoints; i < std::min<std::uint64_t>(count, (n + 1) * nodePoints); ++i)
         points.push_back(at(i));
-      nodes[n] = test::makeNode({}, points, kGridStep, Batch::kMaxPoints, 3);
+      nodes[n] = colouredNode(points, kGridStep, 3);
     }
   });
-  return test::makeList(nodes);
+  return listOf(nodes);
 }
 
 }  // namespace
+
+std::shared_ptr<const NodeData> colouredNode(const std::vector<glm::dvec3>& points, double step, int planes) {
+  const std::shared_ptr<NodeData> node = makeNodeOf({}, points, step, Batch::kMaxPoints, planes);
+  node->colour.reserve(points.size());
+  for (const glm::dvec3& p : points) {
+    const glm::uvec3 wave(127.5 + 127.5 * glm::sin(0.7 * (p - node->origin)));
+    node->colour.push_back(wave.x | wave.y << 8 | wave.z << 16 | 0xff000000u);
+  }
+  return node;
+}
+
+RenderList listOf(const std::vector<std::shared_ptr<const NodeData>>& nodes) {
+  RenderList list;
+  for (const auto& node : nodes) {
+    list.items.push_back({node, node->pointCount()});
+    list.pointCount += node->pointCount();
+  }
+  return list;
+}
 
 Cloud groundCloud(const std::string& name, std::uint64_t count, double side) {
   Cloud cloud{name, count, {}, {}, {}};
@@ -197,4 +216,4 @@ RenderList layered(const Cloud& cloud, std::uint32_t nodePoints) {
   return list;
 }
 
-}  // namespace strata::bench
+}  // namespace strata::suite

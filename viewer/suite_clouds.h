@@ -1,12 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/render_list.h"
 
-namespace strata::bench {
+namespace strata::suite {
 
 /// A made scan: `point(i)` is point i of `count`, in the order that its file
 /// would have. Any thread may ask.
@@ -27,6 +28,12 @@ Cloud buildingCloud(const std::string& name, std::uint64_t count);
 /// the other (Schütz 2022, 4.2).
 Cloud scannerCloud(const std::string& name, std::uint64_t count);
 
+/// A node of these points on a grid of `step` metres, with colours that follow from the position; in as many planes as
+/// that takes or `planes` where it is not 0.
+std::shared_ptr<const NodeData> colouredNode(const std::vector<glm::dvec3>& points, double step, int planes = 0);
+/// Every point of each node.
+RenderList listOf(const std::vector<std::shared_ptr<const NodeData>>& nodes);
+
 /// Consecutive points in nodes of at most `nodePoints` and batches of 10 240,
 /// on a grid of 1 mm.
 RenderList unstructured(const Cloud& cloud, std::uint32_t nodePoints);
@@ -39,4 +46,4 @@ RenderList sorted(const Cloud& cloud, Curve curve, std::uint32_t nodePoints);
 /// consecutive points. Every point once, as in Potree (Schütz 2022, 3.5).
 RenderList layered(const Cloud& cloud, std::uint32_t nodePoints);
 
-}  // namespace strata::bench
+}  // namespace strata::suite
