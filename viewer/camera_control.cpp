@@ -79,6 +79,26 @@ View panned(const View& view, double depth, const glm::dvec2& dragPx) {
   return next;
 }
 
+View slid(const View& view, const glm::dvec3& grabbed, const glm::dvec2& cursor) {
+  // Two points of the ray through the cursor; with the grabbed point's depth as the scale of it all.
+  const double depth = std::max(depthOf(view, grabbed), view.nearPlane);
+  const glm::dvec3 near = worldPoint(view, cursor, depth);
+  const glm::dvec3 ray = worldPoint(view, cursor, 2.0 * depth) - near;
+  if (ray.z == 0.0) return view;
+  const double along = (grabbed.z - near.z) / ray.z;
+  const glm::dvec3 hit = near + ray * along;
+  const double distance = glm::distance(view.eye, grabbed);
+  if (!view.orthographic && along <= -1.0) return view;  // behind the eye
+  if (!(glm::distance(hit, grabbed) <= kFarthestSlide * distance)) return view;
+  const glm::dvec3 shift(grabbed.x - hit.x, grabbed.y - hit.y, 0.0);
+  View next = view;
+  next.eye += shift;
+  next.target += shift;
+  return next;
+}
+
+View looked(const View& view, const glm::dvec2& dragPx) { return orbited(view, view.eye, dragPx); }
+
 View zoomed(const View& view, const glm::dvec3& anchor, double factor) {
   View next = view;
   if (factor < 1.0 && glm::length(view.eye - anchor) < kNearest) return next;
@@ -92,6 +112,12 @@ View zoomed(const View& view, const glm::dvec3& anchor, double factor) {
 
 double flySpeed(const View& view, bool fast) {
   return kFlySpeed * glm::length(view.target - view.eye) * (fast ? kFastFactor : 1.0);
+}
+
+View paced(const View& view, double notches) {
+  View next = view;
+  next.target = view.eye + (view.target - view.eye) * std::pow(kZoomPerNotch, -notches);
+  return glm::distance(next.target, next.eye) < kNearest ? view : next;
 }
 
 View flown(const View& view, const FlyInput& input, double seconds) {
@@ -199,6 +225,14 @@ void CameraControl::resize(int width, int height) {
   view_.height = std::max(height, 1);
 }
 
+void CameraControl::pressLeft(const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  press(mode_ == MoveMode::fly ? Drag::look : mode_ == MoveMode::earth ? Drag::slide : Drag::orbit, cursor, under);
+}
+
+void CameraControl::pressRight(const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  press(mode_ == MoveMode::earth ? Drag::orbit : Drag::pan, cursor, under);
+}
+
 void CameraControl::press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
   glide_.reset();
   drag_ = drag;
@@ -209,10 +243,16 @@ void CameraControl::press(Drag drag, const glm::dvec2& cursor, const std::option
 void CameraControl::move(const glm::dvec2& cursor) {
   if (drag_ == Drag::orbit) view_ = orbited(view_, anchor_, cursor - cursor_);
   if (drag_ == Drag::pan) view_ = panned(view_, std::max(depthOf(view_, anchor_), view_.nearPlane), cursor - cursor_);
+  if (drag_ == Drag::look) view_ = looked(view_, cursor - cursor_);
+  if (drag_ == Drag::slide) view_ = slid(view_, anchor_, cursor);
   cursor_ = cursor;
 }
 
 void CameraControl::wheel(double notches, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under) {
+  if (mode_ == MoveMode::fly) {
+    setView(paced(view_, notches));
+    return;
+  }
   const glm::dvec3 anchor = under ? *under : worldPoint(view_, cursor, depthOf(view_, view_.target));
   setView(zoomed(view_, anchor, std::pow(kZoomPerNotch, notches)));
 }

@@ -28,6 +28,12 @@ std::optional<std::pair<glm::dvec2, glm::dvec2>> segmentOnScreen(const View& vie
 View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx);
 /// Shifts so that what lies `depth` metres away follows the cursor exactly.
 View panned(const View& view, double depth, const glm::dvec2& dragPx);
+/// Slides level over the ground, as a hand moves a map: `grabbed`, a point of the ground, comes under the cursor. Where
+/// the cursor is at the horizon of the level plane through the point, or above it, the view stays.
+inline constexpr double kFarthestSlide = 20.0;  ///< times the distance of the grabbed point
+View slid(const View& view, const glm::dvec3& grabbed, const glm::dvec2& cursor);
+/// Turns the head: as orbited() about the eye.
+View looked(const View& view, const glm::dvec2& dragPx);
 /// Scales the distance to `anchor` by `factor`; the anchor stays under the cursor.
 View zoomed(const View& view, const glm::dvec3& anchor, double factor);
 
@@ -38,10 +44,12 @@ struct FlyInput {
 
   bool still() const { return forward == 0 && right == 0 && up == 0; }
 };
-/// Moves eye and target. The speed is half the distance to the target in a second, five times that when fast: near
-/// things are passed slowly, and a zoom sets the pace.
-/// Metres a second.
+/// Metres a second: half the distance to the target, five times that when fast. Near things are passed slowly, and a
+/// zoom sets the pace.
 double flySpeed(const View& view, bool fast);
+/// The same eye with its target nearer (slower) or farther (faster) along the view, as a zoom's notches would.
+View paced(const View& view, double notches);
+/// Moves eye and target.
 View flown(const View& view, const FlyInput& input, double seconds);
 
 enum class StandardView { front, side, top };
@@ -71,10 +79,17 @@ class CameraMotion {
   std::chrono::steady_clock::time_point lastTime_{};
 };
 
+/// What the left button, the right button and the wheel do.
+enum class MoveMode {
+  orbit,  ///< orbits, pans, goes nearer
+  fly,    ///< turns the head, pans, sets the pace
+  earth   ///< slides over the ground, orbits, goes nearer
+};
+
 /// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
 class CameraControl {
  public:
-  enum class Drag { none, orbit, pan };
+  enum class Drag { none, orbit, pan, look, slide };
 
   explicit CameraControl(const View& view) : view_(view) {}
 
@@ -91,6 +106,11 @@ class CameraControl {
   void advance(double seconds);
   void resize(int width, int height);
 
+  MoveMode mode() const { return mode_; }
+  void setMode(MoveMode mode) { mode_ = mode; }
+  /// The left or the right button goes down, and means what the mode says.
+  void pressLeft(const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
+  void pressRight(const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
   void press(Drag drag, const glm::dvec2& cursor, const std::optional<glm::dvec3>& under);
   void move(const glm::dvec2& cursor);
   void release() { drag_ = Drag::none; }
@@ -104,6 +124,7 @@ class CameraControl {
     double u = 0.0;
   };
   std::optional<Glide> glide_;
+  MoveMode mode_ = MoveMode::orbit;
   View view_;
   Drag drag_ = Drag::none;
   glm::dvec2 cursor_{0.0};

@@ -236,6 +236,125 @@ TEST(CameraControl, ADoubleClickBringsThePointToTheMiddle) {
   EXPECT_NEAR(glm::distance(near.eye, point), 0.4 * glm::distance(view.eye, point), 1e-9);
 }
 
+TEST(CameraControl, AGrabbedPointOfTheGroundStaysUnderTheCursorAndTheEyeKeepsItsHeight) {
+  std::mt19937 random(11);
+  int moved = 0;
+  for (int i = 0; i < 500; ++i) {
+    View view = randomView(random);
+    view.eye.z = view.target.z + 5.0 + 50.0 * std::uniform_real_distribution<double>(0.0, 1.0)(random);
+    const glm::dvec2 from = randomPixel(random, view), to = randomPixel(random, view);
+    const glm::dvec3 grabbed = worldPoint(view, from, std::uniform_real_distribution<double>(5.0, 100.0)(random));
+    CameraControl control(view);
+    control.setMode(MoveMode::earth);
+    control.pressLeft(from, grabbed);
+    control.move(to);
+    const View& next = control.view();
+    EXPECT_EQ(next.eye.z, view.eye.z);
+    EXPECT_LT(glm::distance(next.target - next.eye, view.target - view.eye), 1e-6);
+    if (next.eye == view.eye) continue;
+    ++moved;
+    EXPECT_LT(glm::distance(pixelOf(next, grabbed), to), 1e-4);
+    // Back again by many small steps: the hand has come home, and the camera with it.
+    for (int step = 1; step <= 10; ++step) control.move(glm::mix(to, from, step / 10.0));
+    EXPECT_LT(glm::distance(control.view().eye, view.eye), 1e-5);
+  }
+  EXPECT_GT(moved, 200);
+}
+
+TEST(CameraControl, AGrabbedPointDraggedToTheHorizonIsLetBe) {
+  View view;
+  view.eye = {0.0, -10.0, 3.0};
+  view.target = {0.0, 0.0, 2.0};
+  const glm::dvec3 grabbed(0.0, -4.0, 0.0);
+  for (double y = pixelOf(view, grabbed).y; y > -200.0; y -= 1.0) {
+    const View next = slid(view, grabbed, {700.0, y});
+    EXPECT_LE(glm::distance(next.eye, view.eye), kFarthestSlide * glm::distance(view.eye, grabbed));
+  }
+  EXPECT_EQ(slid(view, grabbed, {700.0, 0.0}).eye, view.eye);
+}
+
+TEST(CameraControl, TheButtonsMeanWhatTheModeSays) {
+  View view;
+  view.eye = {0.0, -10.0, 5.0};
+  const glm::dvec3 under(1.0, 1.0, 0.0);
+  const glm::dvec2 from = pixelOf(view, under), to = from + glm::dvec2(60.0, 25.0);
+  const auto dragged = [&](MoveMode mode, bool left) {
+    CameraControl control(view);
+    control.setMode(mode);
+    if (left)
+      control.pressLeft(from, under);
+    else
+      control.pressRight(from, under);
+    control.move(to);
+    return control.view();
+  };
+  EXPECT_EQ(dragged(MoveMode::orbit, true).eye, orbited(view, under, to - from).eye);
+  EXPECT_LT(glm::distance(pixelOf(dragged(MoveMode::orbit, false), under), to), 1e-6);
+  EXPECT_LT(glm::distance(dragged(MoveMode::fly, true).eye, view.eye), 1e-12);
+  EXPECT_GT(viewBasis(dragged(MoveMode::fly, true)).forward.x, viewBasis(view).forward.x);
+  EXPECT_LT(glm::distance(pixelOf(dragged(MoveMode::fly, false), under), to), 1e-6);
+  EXPECT_LT(glm::distance(pixelOf(dragged(MoveMode::earth, true), under), to), 1e-6);
+  EXPECT_EQ(dragged(MoveMode::earth, false).eye, orbited(view, under, to - from).eye);
+}
+
+TEST(CameraControl, WhileFlyingTheWheelSetsThePaceAndLeavesTheEye) {
+  CameraControl control(View{});
+  control.setMode(MoveMode::fly);
+  const double before = flySpeed(control.view(), false);
+  control.wheel(3.0, {10.0, 10.0}, std::nullopt);
+  EXPECT_GT(flySpeed(control.view(), false), 1.5 * before);
+  EXPECT_EQ(control.view().eye, View{}.eye);
+  control.wheel(-3.0, {10.0, 10.0}, std::nullopt);
+  EXPECT_NEAR(flySpeed(control.view(), false), before, 1e-9);
+  control.wheel(-1000.0, {10.0, 10.0}, std::nullopt);
+  EXPECT_GT(flySpeed(control.view(), false), 0.0);
+}
+
+TEST(CameraControl, MovesAlikeAtEveryScaleFromAStatueToACountry) {
+  std::mt19937 random(12);
+  for (int i = 0; i < 100; ++i) {
+    View view = randomView(random);
+    const glm::dvec3 origin = view.target;
+    view.eye -= origin, view.target -= origin;
+    const glm::dvec2 from = randomPixel(random, view), to = randomPixel(random, view);
+    const glm::dvec3 point = worldPoint(view, from, 30.0);
+    const Box box{point - 10.0, point + 10.0};
+    for (const double scale : {1e-2, 1.0, 1e4}) {
+      View large = view;
+      large.eye *= scale, large.target *= scale, large.orthographicHeight *= scale, large.nearPlane *= scale;
+      const auto same = [&](const View& a, const View& b) {
+        EXPECT_LT(glm::distance(a.eye * scale, b.eye), 1e-6 * scale);
+        EXPECT_LT(glm::distance(a.target * scale, b.target), 1e-6 * scale);
+      };
+      FlyInput keys;
+      keys.forward = 1, keys.right = -1;
+      const Box largeBox{box.min * scale, box.max * scale};
+      same(flown(view, keys, 0.2), flown(large, keys, 0.2));
+      same(zoomed(view, point, 0.85), zoomed(large, point * scale, 0.85));
+      same(panned(view, 30.0, to - from), panned(large, 30.0 * scale, to - from));
+      same(orbited(view, point, to - from), orbited(large, point * scale, to - from));
+      same(slid(view, point, to), slid(large, point * scale, to));
+      same(approached(view, point), approached(large, point * scale));
+      same(paced(view, 2.0), paced(large, 2.0));
+      same(framed(view, box), framed(large, largeBox));
+      same(standardView(view, box, StandardView::side), standardView(large, largeBox, StandardView::side));
+    }
+  }
+}
+
+TEST(CameraControl, FlyingForASecondIsTheSameWhateverTheFrameRate) {
+  FlyInput keys;
+  keys.forward = 1, keys.up = -1, keys.fast = true;
+  View start;
+  start.eye = {100.0, 20.0, 30.0};
+  const View once = flown(start, keys, 1.0);
+  for (const int frames : {2, 30, 144}) {
+    CameraControl control(start);
+    for (int i = 0; i < frames; ++i) control.fly(keys, 1.0 / frames);
+    EXPECT_LT(glm::distance(control.view().eye, once.eye), 1e-6);
+  }
+}
+
 TEST(CameraControl, ASegmentIsCutAtTheNearPlaneAndStaysOnItsLine) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> place(-30.0, 30.0);
