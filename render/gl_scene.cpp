@@ -56,20 +56,6 @@ shader::ViewRecord viewRecord(const ViewConstants& c, const Clip& clip) {
   return record;
 }
 
-shader::GridRecord gridRecord(const GridTransform& grid) {
-  shader::GridRecord record{};
-  record.x = grid.x;
-  record.y = grid.y;
-  record.depth = grid.depth;
-  forEachClipBox(grid.clipBoxes, grid.clipCutouts, [&](std::size_t i, const ClipSteps& box) {
-    record.clipLo[i] = glm::vec4(box.lo, 0.0f);
-    record.clipHi[i] = glm::vec4(box.hi, 0.0f);
-  });
-  for (std::size_t i = 0; i < std::min(grid.clipPlanes.size(), Clip::kMost); ++i)
-    record.clipPlanes[i] = grid.clipPlanes[i];
-  return record;
-}
-
 /// FNV-1a of what pointColour() reads of the options.
 std::uint64_t colourKey(const DrawOptions& options) {
   std::uint64_t key = 0xcbf29ce484222325u;
@@ -101,6 +87,26 @@ bool seen(const ViewConstants& c, const NodeData& node) {
 }
 
 }  // namespace
+
+glm::ivec3 clipCounts(const Clip& clip) {
+  const std::size_t boxes = std::min(clip.boxes.size(), Clip::kMost);
+  return glm::ivec3(
+      glm::uvec3(boxes, std::min(clip.planes.size(), Clip::kMost), std::min(clip.cutouts.size(), Clip::kMost - boxes)));
+}
+
+shader::GridRecord gridRecord(const GridTransform& grid) {
+  shader::GridRecord record{};
+  record.x = grid.x;
+  record.y = grid.y;
+  record.depth = grid.depth;
+  forEachClipBox(grid.clipBoxes, grid.clipCutouts, [&](std::size_t i, const ClipSteps& box) {
+    record.clipLo[i] = glm::vec4(box.lo, 0.0f);
+    record.clipHi[i] = glm::vec4(box.hi, 0.0f);
+  });
+  for (std::size_t i = 0; i < std::min(grid.clipPlanes.size(), Clip::kMost); ++i)
+    record.clipPlanes[i] = grid.clipPlanes[i];
+  return record;
+}
 
 /// One frame in the making.
 struct GlScene::Frame {
@@ -152,9 +158,7 @@ DrawStats GlScene::prepare(const RenderList& list, std::span<const View> views, 
   drawable_ = std::any_of(constants_.begin(), constants_.end(), [](const ViewConstants& c) { return c.drawable; });
   variant_ = {static_cast<int>(views.size()), !options.clip.empty(), !options.classes.all()};
   classes_ = options.classes;
-  const std::size_t boxes = std::min(options.clip.boxes.size(), Clip::kMost);
-  clips_ = glm::ivec3(glm::uvec3(boxes, std::min(options.clip.planes.size(), Clip::kMost),
-                                 std::min(options.clip.cutouts.size(), Clip::kMost - boxes)));
+  clips_ = clipCounts(options.clip);
   forcedPlanes_ = how.forcedPlanes;
   frame.needs = {variant_.classes, how.colours, &options, colourKey(options)};
   frame.grids.resize(views.size());

@@ -13,6 +13,11 @@
 
 namespace strata {
 
+/// As shaders read it.
+shader::GridRecord gridRecord(const GridTransform& grid);
+/// Numbers of boxes, planes, cutouts, as shaders read them.
+glm::ivec3 clipCounts(const Clip& clip);
+
 /// Batches whose nodes lie in one page; their records are consecutive.
 struct PageRun {
   std::uint32_t page = 0;

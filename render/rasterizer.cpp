@@ -35,6 +35,7 @@ void addStats(const DrawStats& one, DrawStats& sum) {
   sum.nodesNotUploaded = std::max(sum.nodesNotUploaded, one.nodesNotUploaded);
   sum.bytesUploaded += one.bytesUploaded;
   sum.gpuBytes = std::max(sum.gpuBytes, one.gpuBytes);
+  sum.pointsPending = std::max(sum.pointsPending, one.pointsPending);
   sum.lockRetries += one.lockRetries;
   sum.lockRepairs += one.lockRepairs;
   sum.uploadMs += one.uploadMs;

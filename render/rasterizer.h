@@ -22,9 +22,15 @@ struct DrawStats {
   std::uint64_t gpuBytes = 0;     ///< held by node data on the GPU; 0 for cpu
   std::uint64_t lockRetries = 0;  ///< compute_lock: turns of its loops beyond the first
   std::uint32_t lockRepairs = 0;  ///< compute_lock: pictures that compute32's passes had to finish
+  std::uint64_t pointsPending = 0;  ///< progressive: places of the pool that this picture has not met yet
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
   double gpuMs = 0.0;  ///< of drawMs, by OpenGL's own clock: clearing, culling, drawing; no reading back. 0 for cpu
 };
+
+/// Whether drawing the same once more would change nothing.
+inline bool isFinished(const DrawStats& stats) {
+  return stats.pointsPending == 0 && (stats.nodesNotUploaded == 0 || stats.bytesUploaded == 0);
+}
 
 /// Adds what one draw did to the sum of several.
 void addStats(const DrawStats& one, DrawStats& sum);

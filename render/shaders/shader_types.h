@@ -31,6 +31,16 @@ using uvec4 = glm::uvec4;
 #define STRATA_BINDING_VIEWS 4  // ViewRecord
 #define STRATA_BINDING_RUNS 5   // DispatchRecord
 
+// Storage blocks of progressive drawing, beside grids, depth, id and candidates
+#define STRATA_BINDING_POINTS 0  // PoolPoint: a page of the pool, or what the pixels kept
+#define STRATA_BINDING_PIECES 1  // PoolPiece
+#define STRATA_BINDING_KEPT 2    // per pixel: the PoolPoint that it shows
+// Storage blocks of filling the pool; its pages are 0 to 3
+#define STRATA_POOL_PAGES 4
+#define STRATA_BINDING_PERMUTATION 4  // per index: place in the pool
+#define STRATA_BINDING_STAGED 5       // PoolPoint, one after the other; or those of the pixels
+#define STRATA_BINDING_INSERTS 6      // PoolInsert; or PoolPiece
+
 #define STRATA_UNIFORM_VIEWPORT 0       // per view: half the picture's width and height, width and height of the image
 #define STRATA_UNIFORM_LENS 4           // per view: near plane, 1 for perspective or 0, corner of the image in the picture
 #define STRATA_UNIFORM_PIXELS 8         // per view: first pixel in the buffers, first row and end row that they hold
@@ -41,6 +51,8 @@ using uvec4 = glm::uvec4;
 #define STRATA_UNIFORM_PRECISIONS 23    // colours of 10, 20 and 30 bits instead of the points' own; 0: their own
 #define STRATA_UNIFORM_FIRST_PART 24    // planning
 #define STRATA_UNIFORM_FORCED 25        // planning, experiments: planes to read, and nothing is culled; 0: neither
+#define STRATA_UNIFORM_RANGE 26         // progressive: first point, end, first word of candidates
+#define STRATA_UNIFORM_PAGE_POINTS 27   // filling the pool: points a page
 
 #define STRATA_ATTRIBUTE_RECORD 0
 
@@ -70,6 +82,38 @@ struct GridRecord {
   vec4 x, y, depth;  // xyz: for each step, w: base
   vec4 clipLo[STRATA_MOST_CLIPS], clipHi[STRATA_MOST_CLIPS];
   vec4 clipPlanes[STRATA_MOST_CLIPS];
+};
+
+// A PoolPoint is a uvec4: the three words of a position as NodeData has them (0 for planes that are not loaded), then
+// its index in its piece (12 bits) and the slot of the piece (18 bits). The class, 8 bits, is in the upper two bits of
+// the four words, the lowest in the first.
+#define STRATA_PIECE_BITS 12
+#define STRATA_SLOT_BITS 18
+#define STRATA_NO_POINT 0xffffffffu  // as the last word: an empty place. No piece has the last slot
+
+// Flags of PoolPiece
+#define STRATA_PIECE_PLANES 3    // mask: planes to read
+#define STRATA_PIECE_CLIPPED 4   // its points are to be tested against the clip region
+#define STRATA_PIECE_CLASSES 8   // its points have classes
+#define STRATA_PIECE_DEAD 16     // freed: what is left of it in the pool is to be removed
+#define STRATA_PIECE_WRITTEN 32  // was written again in this frame: pixels fetch their points anew
+#define STRATA_PIECE_GRID 8      // the grid is this many bits to the left of the flags
+
+/// Consecutive points of one batch in the pool, as the view sees them; by slot.
+struct PoolPiece {
+  ivec4 offset;  // of BatchPlace. w: id of the first point
+  uint shifts;   // of BatchPlace: an axis, a byte each, 128 more
+  uint count;    // points that are drawn, the first ones
+  uint flags;
+  uint first;    // index of the first point, before shuffling
+};
+
+/// Points on their way into the pool.
+struct PoolInsert {
+  uint first;   // index in the pool, before shuffling
+  uint count;
+  uint staged;  // first in the stream buffer
+  uint padding;
 };
 
 /// Written by the shaders, cleared before each frame.
@@ -125,6 +169,7 @@ struct DispatchRecord {
 #ifdef __cplusplus
 static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchPlace) == 32 && sizeof(GridRecord) == 240);
 static_assert(sizeof(BatchBox) == 4 * STRATA_BOX_WORDS && sizeof(DrawPart) == 192 && sizeof(ViewRecord) == 640);
+static_assert(sizeof(PoolPiece) == 32 && sizeof(PoolInsert) == 16);
 static_assert(sizeof(DispatchRecord) == 12 && sizeof(Counters) == 32);
 }  // namespace strata::shader
 #endif

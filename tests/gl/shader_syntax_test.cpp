@@ -55,6 +55,14 @@ TEST_F(ShaderSyntax, OfTheComputeShadersIsSound) {
   });
 }
 
+TEST_F(ShaderSyntax, OfProgressiveDrawingIsSound) {
+  forEachVariant([](const std::string& defines) {
+    EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "batch.glsl", "progressive.comp"}), "");
+    for (const std::string_view file : {"pool_insert.comp", "pool_fetch.comp"})
+      EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "pool.glsl", file}), "");
+  });
+}
+
 TEST_F(ShaderSyntax, OfCompute64IsSoundByEitherNameOfItsAtomics) {
   for (const char* atomics : {"GL_NV_shader_atomic_int64", "GL_EXT_shader_atomic_int64"})
     forEachVariant([&](const std::string& defines) {
