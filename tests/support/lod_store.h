@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/view.h"
 #include "io/node_codec.h"
 #include "io/store.h"
 
