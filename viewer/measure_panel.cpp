@@ -3,7 +3,6 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 
 #include "viewer/choose_panel.h"
@@ -16,8 +15,6 @@ constexpr float kWidth = 300.0f;  // pixels
 constexpr float kMargin = 12.0f;
 constexpr std::uint32_t kLine = 0xff00c4ffu;
 constexpr std::uint32_t kCurrent = 0xffffc840u;
-constexpr std::array kKinds{MeasureKind::point, MeasureKind::distance, MeasureKind::height, MeasureKind::angle,
-                            MeasureKind::area};
 
 void drawPicked(const ToolsState& state) {
   if (state.lookingUp) ImGui::TextDisabled("reading ...");
@@ -40,33 +37,55 @@ void drawPicked(const ToolsState& state) {
   }
 }
 
-/// One line of the list of measurements. True when it is to be deleted.
-bool drawMeasurementLine(Measurement& m) {
+/// Two lines of the list of measurements. True when it is to be deleted.
+bool drawMeasurementLine(Measurement& m, bool& show) {
   ImGui::Checkbox("##visible", &m.visible);
   ImGui::SameLine();
   char name[64];
   std::snprintf(name, sizeof name, "%s", m.name.c_str());
-  ImGui::SetNextItemWidth(0.34f * kWidth);
+  ImGui::SetNextItemWidth(0.42f * kWidth);
   if (ImGui::InputText("##name", name, sizeof name)) m.name = name;
   ImGui::SameLine();
-  ImGui::TextUnformatted(measureText(m).c_str());
+  if (m.kind == MeasureKind::profile) {
+    show = ImGui::SmallButton("show");
+    ImGui::SameLine();
+  }
+  if (ImGui::SmallButton("copy")) ImGui::SetClipboardText((m.name + ": " + measureText(m)).c_str());
   ImGui::SameLine(kWidth - 34.0f);
-  return ImGui::SmallButton("x");
+  const bool dropped = ImGui::SmallButton("x");
+  ImGui::Indent(28.0f);
+  ImGui::TextUnformatted(measureText(m).c_str());
+  ImGui::Unindent(28.0f);
+  return dropped;
+}
+
+void drawMeasuring(ToolsState& state) {
+  const Measurement& current = *state.measure.current();
+  const std::size_t least = leastPoints(current.kind), count = current.points.size();
+  if (count < least)
+    ImGui::TextDisabled("click the %s", count == 0 ? (least == 1 ? "point" : "first point") : "next point");
+  else
+    ImGui::TextDisabled("next point, or double click to end");
+  if (count >= least && ImGui::SmallButton("done")) state.measure.finish();
+  if (count >= least) ImGui::SameLine();
+  if (state.measure.active() && ImGui::SmallButton("stop measuring")) state.measure.cancel();
 }
 
 void drawMeasure(ToolsState& state, ToolsRequest& request) {
-  for (const MeasureKind kind : kKinds) {
-    if (kind != kKinds.front()) ImGui::SameLine();
+  for (const MeasureKind kind : kMeasureKinds) {
+    if (kind != kMeasureKinds.front() && kind != MeasureKind::angle) ImGui::SameLine();
     const bool on = state.measure.active() && state.measure.current()->kind == kind;
     if (on) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     if (ImGui::SmallButton(measureName(kind))) on ? state.measure.finish() : state.measure.begin(kind);
     if (on) ImGui::PopStyleColor();
   }
-  if (state.measure.active()) ImGui::TextDisabled("click points; Enter keeps, Backspace takes back,\nEscape drops");
+  if (state.measure.active()) drawMeasuring(state);
   std::vector<Measurement>& kept = state.measure.kept();
   for (std::size_t i = 0; i < kept.size();) {
     ImGui::PushID(static_cast<int>(i));
-    const bool dropped = drawMeasurementLine(kept[i]);
+    bool show = false;
+    const bool dropped = drawMeasurementLine(kept[i], show);
+    if (show) request.showProfile = i;
     ImGui::PopID();
     if (dropped)
       kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
@@ -74,6 +93,8 @@ void drawMeasure(ToolsState& state, ToolsRequest& request) {
       ++i;
   }
   if (kept.empty()) return;
+  if (ImGui::SmallButton("copy all")) ImGui::SetClipboardText(measurementsCsv(kept).c_str());
+  ImGui::SameLine();
   request.exportCsv = ImGui::SmallButton("save CSV");
   ImGui::SameLine();
   request.exportGeoJson = ImGui::SmallButton("save GeoJSON");
@@ -101,11 +122,26 @@ void drawBookmarks(ToolsState& state, ToolsRequest& request) {
   }
 }
 
+/// The outline of a profile's slab, segment by segment, at the heights of its points.
+void drawSlab(const Measurement& m, const View& view, std::uint32_t colour) {
+  for (std::size_t i = 0; i + 1 < m.points.size(); ++i) {
+    const glm::dvec3 &a = m.points[i], &b = m.points[i + 1];
+    const glm::dvec2 way(b - a);
+    if (!(glm::length(way) > 0.0)) continue;
+    const glm::dvec3 side(glm::normalize(glm::dvec2(-way.y, way.x)) * (0.5 * m.width), 0.0);
+    overlayLine(view, a + side, b + side, colour, 1.0f);
+    overlayLine(view, a - side, b - side, colour, 1.0f);
+    overlayLine(view, a + side, a - side, colour, 1.0f);
+    overlayLine(view, b + side, b - side, colour, 1.0f);
+  }
+}
+
 void drawOne(const Measurement& m, const View& view, std::uint32_t colour) {
   const std::size_t count = m.points.size();
   const bool closed = m.kind == MeasureKind::area && count > 2;
   for (std::size_t i = 0; i + (closed ? 0 : 1) < count; ++i)
     overlayRimmedLine(view, m.points[i], m.points[(i + 1) % count], colour);
+  if (m.kind == MeasureKind::profile) drawSlab(m, view, colour);
   glm::dvec3 middle(0.0);
   for (const glm::dvec3& p : m.points) middle += p / static_cast<double>(count);
   overlayText(view, m.kind == MeasureKind::angle && count == 3 ? m.points[1] : middle, measureText(m), colour);

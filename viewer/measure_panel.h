@@ -34,6 +34,7 @@ struct ToolsRequest {
   bool saveProject = false;
   bool addBookmark = false;
   std::optional<View> goTo;
+  std::optional<std::size_t> showProfile;  ///< index among the measurements
 };
 
 /// Draws the tools' panel at the right edge of the window that `view` fills; between Window::beginFrame() and

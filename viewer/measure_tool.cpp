@@ -12,17 +12,21 @@ std::string MeasureTool::freeName(MeasureKind kind) const {
 }
 
 void MeasureTool::keepCurrent() {
-  if (current_ && current_->points.size() >= leastPoints(current_->kind)) kept_.push_back(std::move(*current_));
+  if (current_ && current_->points.size() >= leastPoints(current_->kind)) {
+    if (current_->kind == MeasureKind::profile) current_->width = profileWidth(current_->points);
+    kept_.push_back(std::move(*current_));
+  }
   current_.reset();
 }
 
 void MeasureTool::begin(MeasureKind kind) {
   keepCurrent();
-  current_ = Measurement{freeName(kind), kind, {}, true};
+  current_ = Measurement{freeName(kind), kind, {}, true, 1.0};
 }
 
 void MeasureTool::add(const glm::dvec3& point) {
   if (!current_) return;
+  if (!current_->points.empty() && current_->points.back() == point) return;
   current_->points.push_back(point);
   if (const MeasureKind kind = current_->kind; current_->points.size() == mostPoints(kind)) begin(kind);
 }

@@ -16,7 +16,8 @@ class MeasureTool {
   /// Empty where none is active.
   const std::optional<Measurement>& current() const { return current_; }
 
-  /// A click on a point. A measurement that has all its points is kept, and the next of its kind begins.
+  /// A click on a point. A measurement that has all its points is kept, and the next of its kind begins. The same point
+  /// twice in a row counts once.
   void add(const glm::dvec3& point);
   /// Takes back the last click.
   void undo();

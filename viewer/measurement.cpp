@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kMostVertices = 10000;
-constexpr const char* kNames[] = {"point", "distance", "height", "angle", "area"};
+constexpr const char* kNames[] = {"point", "distance", "height", "angle", "area", "polyline", "profile"};
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::string number(double value, const char* format) {
@@ -41,6 +41,8 @@ Value valueOf(const Measurement& m) {
     case MeasureKind::point:
       return {m.points[0].z, "m"};
     case MeasureKind::distance:
+    case MeasureKind::polyline:
+    case MeasureKind::profile:
       return {lengthOf(m.points), "m"};
     case MeasureKind::height:
       return {heightOf(m.points), "m"};
@@ -63,6 +65,8 @@ std::string csvField(const std::string& text) {
   return quoted;
 }
 
+constexpr double kProfileShare = 0.02;  // of its length, the width of a new profile
+
 bool isWhole(const Measurement& m) { return m.points.size() >= leastPoints(m.kind); }
 
 }  // namespace
@@ -72,7 +76,8 @@ const char* measureName(MeasureKind kind) { return kNames[static_cast<std::size_
 MeasureKind parseMeasure(const std::string& name) {
   for (std::size_t i = 0; i < std::size(kNames); ++i)
     if (name == kNames[i]) return static_cast<MeasureKind>(i);
-  throw UsageError("found measurement '" + name + "' (expected point, distance, height, angle or area)");
+  throw UsageError("found measurement '" + name +
+                   "' (expected point, distance, height, angle, area, polyline or profile)");
 }
 
 std::size_t leastPoints(MeasureKind kind) {
@@ -80,9 +85,10 @@ std::size_t leastPoints(MeasureKind kind) {
   return kind == MeasureKind::angle || kind == MeasureKind::area ? 3 : 2;
 }
 
-std::size_t mostPoints(MeasureKind kind) {
-  if (kind == MeasureKind::distance || kind == MeasureKind::area) return kMostVertices;
-  return leastPoints(kind);
+std::size_t mostPoints(MeasureKind kind) { return isOpenEnded(kind) ? kMostVertices : leastPoints(kind); }
+
+bool isOpenEnded(MeasureKind kind) {
+  return kind == MeasureKind::area || kind == MeasureKind::polyline || kind == MeasureKind::profile;
 }
 
 double lengthOf(const std::vector<glm::dvec3>& points) {
@@ -98,6 +104,8 @@ double heightOf(const std::vector<glm::dvec3>& points) {
   return high->z - low->z;
 }
 
+double profileWidth(const std::vector<glm::dvec3>& points) { return niceStep(kProfileShare * lengthOf(points)); }
+
 double angleOf(const std::vector<glm::dvec3>& points) {
   if (points.size() < 3) return 0.0;
   const glm::dvec3 a = points[0] - points[1];
@@ -109,13 +117,24 @@ double areaOf(const std::vector<glm::dvec3>& points) { return 0.5 * glm::length(
 
 double groundAreaOf(const std::vector<glm::dvec3>& points) { return 0.5 * std::abs(newellNormal(points).z); }
 
+double niceStep(double least) {
+  if (!(least > 0.0) || !std::isfinite(least)) return 1.0;
+  const double power = std::pow(10.0, std::floor(std::log10(least)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * power >= least) return step * power;
+  return 10.0 * power;
+}
+
 std::string measureText(const Measurement& m) {
   if (!isWhole(m)) return {};
   switch (m.kind) {
     case MeasureKind::point:
       return number(m.points[0].x, "%.3f ") + number(m.points[0].y, "%.3f ") + number(m.points[0].z, "%.3f");
     case MeasureKind::distance:
+    case MeasureKind::polyline:
       return number(lengthOf(m.points), "%.3f m");
+    case MeasureKind::profile:
+      return number(lengthOf(m.points), "%.3f m, ") + number(m.width, "%.3g m wide");
     case MeasureKind::height:
       return number(heightOf(m.points), "%.3f m over ") +
              number(glm::length(glm::dvec2(m.points[1] - m.points[0])), "%.3f m");
@@ -157,11 +176,9 @@ std::string measurementsGeoJson(const std::vector<Measurement>& measurements, co
       geometry = {{"type", "LineString"}, {"coordinates", line}};
     }
     const Value value = valueOf(m);
-    features.push_back(
-        {{"type", "Feature"},
-         {"properties",
-          {{"name", m.name}, {"kind", measureName(m.kind)}, {"value", value.value}, {"unit", value.unit}}},
-         {"geometry", geometry}});
+    Json properties{{"name", m.name}, {"kind", measureName(m.kind)}, {"value", value.value}, {"unit", value.unit}};
+    if (m.kind == MeasureKind::profile) properties["width"] = m.width;
+    features.push_back({{"type", "Feature"}, {"properties", properties}, {"geometry", geometry}});
   }
   Json collection{{"type", "FeatureCollection"}};
   if (!crs.empty()) collection["coordinate_system"] = crs;

@@ -142,12 +142,4 @@ std::optional<std::uint32_t> profilePointAt(const Frame& frame, const glm::dvec2
   return nearest;
 }
 
-double niceStep(double least) {
-  if (!(least > 0.0) || !std::isfinite(least)) return 1.0;
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double step : {1.0, 2.0, 5.0})
-    if (step * power >= least) return step * power;
-  return 10.0 * power;
-}
-
 }  // namespace strata

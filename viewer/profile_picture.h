@@ -15,6 +15,8 @@ struct ProfileWindow {
   double left = 0.0, bottom = 0.0;  ///< metres at the picture's left lower corner
   glm::dvec2 metresPerPixel{0.01};  ///< along, height
   int width = 1, height = 1;        ///< pixels
+
+  bool operator==(const ProfileWindow&) const = default;
 };
 
 /// All of it with a margin, heights stretched by `stretch`.
@@ -34,8 +36,5 @@ void drawProfile(const Profile& profile, const ProfileWindow& window, const Draw
 
 /// The point drawn nearest to the pixel, as an index in Profile::points, within `reach` pixels.
 std::optional<std::uint32_t> profilePointAt(const Frame& frame, const glm::dvec2& pixel, int reach);
-
-/// 1, 2 or 5 times a power of ten: the least such that is at least `least`.
-double niceStep(double least);
 
 }  // namespace strata

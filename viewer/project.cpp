@@ -116,9 +116,12 @@ Measurement parseMeasurement(const std::string& file, const Json& json, const st
   try {
     m.kind = parseMeasure(kind);
   } catch (const UsageError&) {
-    members.fail("kind", "point, distance, height, angle or area");
+    members.fail("kind", "point, distance, height, angle, area, polyline or profile");
   }
   for (const Json& point : members.list("points")) m.points.push_back(members.vector("points", point));
+  if (m.kind == MeasureKind::distance && m.points.size() > 2) m.kind = MeasureKind::polyline;  // its name once
+  members.read("width", m.width);
+  if (!(m.width > 0.0)) members.fail("width", "more than 0 metres");
   if (m.points.size() < leastPoints(m.kind) || m.points.size() > mostPoints(m.kind))
     members.fail("points", "as many as the kind needs");
   return m;
@@ -250,6 +253,7 @@ std::string projectJson(const std::string& path, const Project& project) {
     for (const glm::dvec3& point : m.points) points.push_back(vectorJson(point));
     json["measurements"].push_back(
         {{"name", m.name}, {"kind", measureName(m.kind)}, {"visible", m.visible}, {"points", points}});
+    if (m.kind == MeasureKind::profile) json["measurements"].back()["width"] = m.width;
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

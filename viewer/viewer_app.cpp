@@ -11,8 +11,10 @@
 #include "viewer/choose_panel.h"
 #include "viewer/layers.h"
 #include "viewer/measure_panel.h"
+#include "viewer/overlay.h"
 #include "viewer/panel.h"
 #include "viewer/point_lookup.h"
+#include "viewer/profile_panel.h"
 #include "viewer/project.h"
 #include "viewer/scan_conversion.h"
 #include "viewer/scene.h"
@@ -27,7 +29,8 @@ namespace {
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot's full detail
 constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
 constexpr int kPanelFrames = 2;
-constexpr int kClickReach = 6;      // pixels beside a point that still mean it
+constexpr int kClickReach = 6;  // pixels beside a point that still mean it
+constexpr std::uint32_t kPointedColour = 0xffffc840u;
 constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
 
 std::vector<std::shared_ptr<const Store>> openStores(const std::vector<std::string>& paths) {
@@ -60,6 +63,13 @@ std::vector<std::string> namesOf(const std::vector<std::string>& paths) {
   return names;
 }
 
+/// A name that the user gave, without what has no place in a file's.
+std::string fileNameOf(std::string name) {
+  for (char& c : name)
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 32) c = '_';
+  return name.empty() || name.front() == '.' ? "_" + name : name;
+}
+
 class ViewerApp {
  public:
   explicit ViewerApp(const ViewerOptions& options)
@@ -69,6 +79,7 @@ class ViewerApp {
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
                 options.screenshot.empty()),
         screen_(Window::getProc()),
+        profile_(Window::getProc()),
         rasterizer_(createRasterizer(options.backend, {}, adoptCurrentContext(Window::getProc()))),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
     settings_.selection = options.streamer.selection;
@@ -96,6 +107,7 @@ class ViewerApp {
     tools_.classes = project.draw.classes;
     tools_.clip.boxes() = project.clipBoxes;
     tools_.measure.kept() = project.measurements;
+    keptBefore_ = project.measurements.size();
     control_.setView(project.view);
     layers_.setSelection(settings_.selection);
     layers_.setShown(tools_.shown);
@@ -117,7 +129,7 @@ class ViewerApp {
       window_.finishFrame();
       window_.present();
       idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0 && !control_.gliding() &&
-             !lookup_.pending();
+             !lookup_.pending() && !profile_.reading() && !window_.panelInUse();
     }
   }
 
@@ -173,7 +185,7 @@ class ViewerApp {
     if (input.side) control_.glideTo(standardView(view, scene_.bounds, StandardView::side));
     if (input.top) control_.glideTo(standardView(view, scene_.bounds, StandardView::top));
     if (input.orthographic) control_.setView(withOrthographic(view, !view.orthographic));
-    if (input.doubleClicked)
+    if (input.doubleClicked && !tools_.measure.active())
       if (const auto point = pointUnder(input.cursor)) control_.glideTo(approached(view, *point));
   }
 
@@ -201,6 +213,12 @@ class ViewerApp {
         tools_.picked = answer->point;
         tools_.measure.add(answer->point.position);
       }
+    }
+    if (input.doubleClicked && tools_.measure.active() && isOpenEnded(tools_.measure.current()->kind))
+      endMeasuring_ = true;
+    if (endMeasuring_ && !lookup_.pending()) {
+      tools_.measure.finish();
+      endMeasuring_ = false;
     }
     tools_.lookingUp = lookup_.pending();
   }
@@ -240,9 +258,25 @@ class ViewerApp {
     if (request.exportGeoJson)
       save(tools_.exportBase + ".geojson", measurementsGeoJson(kept, layers_.stores().front()->info().crs));
     if (request.saveProject) saveProject();
+    drawProfile(request.showProfile);
     drawHelp(helpOpen_);
     drawError(stats_.error);
     return changed || request.layersChanged || request.pictureChanged || request.goTo;
+  }
+
+  /// The window of a profile, which opens by itself for one that was just made.
+  void drawProfile(std::optional<std::size_t> asked) {
+    std::vector<Measurement>& kept = tools_.measure.kept();
+    if (kept.size() > keptBefore_ && kept.back().kind == MeasureKind::profile) asked = kept.size() - 1;
+    keptBefore_ = kept.size();
+    if (asked && *asked < kept.size()) profile_.show(kept[*asked]);
+    std::vector<std::shared_ptr<const Store>> shown;
+    for (std::size_t i = 0; i < layers_.stores().size(); ++i)
+      if (tools_.shown[i]) shown.push_back(layers_.stores()[i]);
+    const ProfilePanel::Outcome outcome = profile_.draw(kept, shown, settings_.draw);
+    if (outcome.pointed) overlayRing(control_.view(), *outcome.pointed, kPointedColour, 8.0f);
+    if (!outcome.csv.empty()) save(fileNameOf(outcome.name) + ".csv", outcome.csv);
+    if (!outcome.failure.empty()) stats_.error = outcome.failure;
   }
 
   void save(const std::string& file, const std::string& text) {
@@ -266,6 +300,7 @@ class ViewerApp {
   const Scene scene_;
   Window window_;
   Screen screen_;
+  ProfilePanel profile_;
   std::unique_ptr<Rasterizer> rasterizer_;
   CameraControl control_;
   CameraMotion motion_;
@@ -274,6 +309,8 @@ class ViewerApp {
   ToolsState tools_;
   PointLookup lookup_;
   std::vector<glm::dvec4> planes_;  ///< of the command line
+  std::size_t keptBefore_ = 0;      ///< measurements in the last frame
+  bool endMeasuring_ = false;       ///< as soon as the point asked for is there
   bool helpOpen_ = false;
   const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
   Frame frame_;

@@ -142,6 +142,8 @@ WindowInput Window::beginFrame(double waitSeconds) {
   return input;
 }
 
+bool Window::panelInUse() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }
+
 void Window::drawPicture(unsigned texture) {
   ImGui::GetBackgroundDrawList()->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)),
                                            ImVec2(0.0f, 0.0f), ImGui::GetIO().DisplaySize);

@@ -50,6 +50,8 @@ class Window {
   bool closed() const;
   /// Takes in what happened and begins a frame of the panel. Where nothing does, waits up to `waitSeconds`.
   WindowInput beginFrame(double waitSeconds);
+  /// The mouse is over a panel or a text is typed: what is drawn may change with every event.
+  bool panelInUse() const;
   /// Puts a texture behind everything.
   void drawPicture(unsigned texture);
   /// Draws the panel into the back buffer.

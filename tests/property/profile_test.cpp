@@ -219,13 +219,6 @@ TEST_F(ProfileOfStores, ArePicturedWithEveryPointUnderItsOwnPixelOrOneNearerToTh
   }
 }
 
-TEST(Profile, ScalesHaveRoundSteps) {
-  EXPECT_DOUBLE_EQ(niceStep(0.3), 0.5);
-  EXPECT_DOUBLE_EQ(niceStep(1.0), 1.0);
-  EXPECT_DOUBLE_EQ(niceStep(70.0), 100.0);
-  EXPECT_DOUBLE_EQ(niceStep(0.0), 1.0);
-}
-
 TEST(Profile, TheSlabEndsSquareAndGoesRoundItsCorners) {
   const ProfileSlab slab{{{0.0, 0.0}, {10.0, 0.0}, {10.0, 10.0}}, 2.0};
   EXPECT_FALSE(placeInSlab(slab, {-0.1, 0.0}));

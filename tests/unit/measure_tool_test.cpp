@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace strata {
 namespace {
 
@@ -27,7 +29,7 @@ TEST(MeasureTool, AKindWithAFixedNumberOfPointsIsKeptWithTheLastOneAndTheNextBeg
 
 TEST(MeasureTool, APolylineGrowsUntilItIsFinished) {
   MeasureTool tool;
-  tool.begin(MeasureKind::distance);
+  tool.begin(MeasureKind::polyline);
   for (int i = 0; i < 5; ++i) tool.add(glm::dvec3(i));
   tool.undo();
   EXPECT_TRUE(tool.kept().empty());
@@ -35,6 +37,25 @@ TEST(MeasureTool, APolylineGrowsUntilItIsFinished) {
   EXPECT_FALSE(tool.active());
   ASSERT_EQ(tool.kept().size(), 1u);
   EXPECT_EQ(tool.kept()[0].points.size(), 4u);
+}
+
+TEST(MeasureTool, TheSamePointTwiceInARowCountsOnce) {
+  MeasureTool tool;
+  tool.begin(MeasureKind::polyline);
+  for (const double x : {1.0, 1.0, 2.0, 2.0, 1.0}) tool.add(glm::dvec3(x));
+  EXPECT_EQ(tool.current()->points.size(), 3u);
+}
+
+TEST(MeasureTool, AProfileIsKeptWithAWidthThatSuitsItsLength) {
+  MeasureTool tool;
+  for (const double length : {0.3, 40.0, 9000.0}) {
+    tool.begin(MeasureKind::profile);
+    tool.add({});
+    tool.add({length, 0.0, 5.0});
+    tool.finish();
+    EXPECT_GT(tool.kept().back().width, 0.01 * length);
+    EXPECT_LT(tool.kept().back().width, 0.06 * std::max(length, 5.0));
+  }
 }
 
 TEST(MeasureTool, WhatIsNotWholeIsNotKept) {
@@ -52,7 +73,7 @@ TEST(MeasureTool, WhatIsNotWholeIsNotKept) {
 TEST(MeasureTool, NamesAreNotUsedTwice) {
   MeasureTool tool;
   tool.begin(MeasureKind::point);
-  for (int i = 0; i < 3; ++i) tool.add({});
+  for (int i = 0; i < 3; ++i) tool.add(glm::dvec3(i));
   tool.kept().erase(tool.kept().begin());
   tool.finish();
   tool.begin(MeasureKind::point);

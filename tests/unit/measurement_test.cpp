@@ -47,9 +47,8 @@ TEST(Measurement, HeightIsFromTheLowestToTheHighest) {
 }
 
 TEST(Measurement, TextIsEmptyUntilThereAreEnoughPoints) {
-  for (const MeasureKind kind :
-       {MeasureKind::point, MeasureKind::distance, MeasureKind::height, MeasureKind::angle, MeasureKind::area}) {
-    Measurement m{"m", kind, {}, true};
+  for (const MeasureKind kind : kMeasureKinds) {
+    Measurement m{"m", kind, {}, true, 1.0};
     while (m.points.size() < leastPoints(kind)) {
       EXPECT_EQ(measureText(m), "");
       m.points.push_back({static_cast<double>(m.points.size()), 1.0, 2.0});
@@ -82,6 +81,13 @@ TEST(Measurement, GeoJsonHasAGeometryForEachKindAndClosesPolygons) {
   ASSERT_EQ(ring.size(), 4u);
   EXPECT_EQ(ring[0], ring[3]);
   EXPECT_NEAR(json["features"][2]["properties"]["value"].get<double>(), 0.5, 1e-6);
+}
+
+TEST(Measurement, ScalesHaveRoundSteps) {
+  EXPECT_DOUBLE_EQ(niceStep(0.3), 0.5);
+  EXPECT_DOUBLE_EQ(niceStep(1.0), 1.0);
+  EXPECT_DOUBLE_EQ(niceStep(70.0), 100.0);
+  EXPECT_DOUBLE_EQ(niceStep(0.0), 1.0);
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ Project someProject() {
   project.pointBudget = 12'345'678;
   project.pointsPerPixel = 1.75;
   project.bookmarks = {{"the \"tower\"", project.view}};
-  project.measurements = {{"d", MeasureKind::distance, {{1, 2, 3}, {4, 5, 6.001}}, false}};
+  project.measurements = {{"d", MeasureKind::distance, {{1, 2, 3}, {4, 5, 6.001}}, false, 1.0},
+                          {"cut", MeasureKind::profile, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, true, 2.5}};
   return project;
 }
 
