@@ -348,6 +348,8 @@ void convertOpen(const Sources& sources, const ConvertOptions& options, const Co
   } catch (const Stopped&) {
     session.keep();
     throw;
+  } catch (const fs::filesystem_error& failure) {  // a file of the building folder is gone
+    throw Error(failure.path1().string(), failure.code().message());
   }
   session.folder.keep();  // a finished store is not thrown away, whatever its name runs into
   session.folder.publish();

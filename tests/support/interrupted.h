@@ -47,17 +47,17 @@ inline void leaveInterrupted(const Words& inputs, const std::filesystem::path& s
   }
 }
 
-inline void expectKillsResume(int kills) {
+inline void expectKillsResume(int kills, const Words& inputs, const Words& options) {
   const TempFolder folder;
   const std::filesystem::path whole = folder / "whole.strata", store = folder / "killed.strata";
-  const Finished undisturbed = runProgram("strata-convert", convertWords(kScan, whole, {}));
+  const Finished undisturbed = runProgram("strata-convert", convertWords(inputs, whole, options));
   ASSERT_EQ(undisturbed.exitCode, 0) << undisturbed.err;
   std::mt19937 random(7);
   int killed = 0;
   for (int i = 0; i < kills; ++i) {
     // Spread over the whole run, so that every stage gets its share.
     const double share = (i + std::uniform_real_distribution<>(0.0, 1.0)(random)) / kills;
-    const Finished first = interrupt(kScan, store, share * undisturbed.seconds, {}, SIGKILL);
+    const Finished first = interrupt(inputs, store, share * undisturbed.seconds, options, SIGKILL);
     if (std::filesystem::exists(store)) {  // it was faster
       ASSERT_TRUE(sameStores(store, whole)) << "killed after " << share << " of the run";
       std::filesystem::remove_all(store);
@@ -65,11 +65,13 @@ inline void expectKillsResume(int kills) {
     }
     ASSERT_NE(first.exitCode, 0);
     ++killed;
-    if (i % 3 == 0) interrupt(kScan, store, 0.3 * undisturbed.seconds, {"--resume"}, SIGKILL);  // once more
+    Words again = options;
+    again.push_back("--resume");
+    if (i % 3 == 0) interrupt(inputs, store, 0.3 * undisturbed.seconds, again, SIGKILL);  // once more
     const char* threads = i % 2 == 0 ? "1" : "3";
     if (!std::filesystem::exists(store)) {
-      const Finished last =
-          runProgram("strata-convert", convertWords(kScan, store, {"--resume", "--threads", threads}));
+      again.insert(again.end(), {"--threads", threads});
+      const Finished last = runProgram("strata-convert", convertWords(inputs, store, again));
       ASSERT_EQ(last.exitCode, 0) << last.err << " after " << share << " of the run";
     }
     ASSERT_TRUE(sameStores(store, whole)) << "killed after " << share << " of the run";

@@ -4,7 +4,7 @@
 namespace strata::test {
 namespace {
 
-TEST(ManyKills, ResumeToTheSameBytes) { expectKillsResume(200); }
+TEST(ManyKills, ResumeToTheSameBytes) { expectKillsResume(200, kScan, {}); }
 
 }  // namespace
 }  // namespace strata::test

@@ -9,7 +9,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Resume, GivesTheSameBytesWhereverTheConversionWasKilled) { expectKillsResume(25); }
+TEST(Resume, GivesTheSameBytesWhereverTheConversionWasKilled) { expectKillsResume(25, kScan, {}); }
+
+TEST(Resume, GivesTheSameNormalsWhereverTheConversionWasKilled) {
+  expectKillsResume(10, {"synthetic:plane?points=3e5", "synthetic:degenerate?points=1e5"}, {"--normals"});
+}
 
 TEST(Resume, EndsThoughKilledAgainAndAgain) {
   const TempFolder folder;
@@ -166,22 +170,6 @@ TEST(Resume, WithNothingToResumeIsAPlainConversion) {
   EXPECT_EQ(runProgram("strata-convert", convertWords({"synthetic:plane?points=1000"}, store, {"--resume"})).exitCode,
             0);
   expectNothingElse(store);
-}
-
-TEST(Disk, ThatIsFullEndsTheConversionAndLeavesNothing) {
-  const TempFolder folder;
-  const fs::path store = folder / "a.strata", temp = folder / "temp";
-  fs::create_directory(temp);
-  // Files of at most so many KiB: the temporary points, points.bin and the journal run into it in turn.
-  for (const char* most : {"8000", "1000", "100", "4"}) {
-    std::string command =
-        std::string("trap '' XFSZ; ulimit -f ") + most + "; exec " + programPath("strata-convert").string();
-    for (const std::string& word : convertWords(kScan, store, {"--temp", temp.string()})) command += " '" + word + "'";
-    const Finished finished = runProgram("/bin/bash", {"-c", command});
-    expectRefused(finished, store);
-    EXPECT_TRUE(fs::is_empty(temp)) << most;
-    EXPECT_FALSE(fs::exists(buildingOf(store))) << most;
-  }
 }
 
 }  // namespace
