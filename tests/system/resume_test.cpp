@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 TEST(Resume, GivesTheSameBytesWhereverTheConversionWasKilled) { expectKillsResume(25, kScan, {}); }
 
 TEST(Resume, GivesTheSameNormalsWhereverTheConversionWasKilled) {
-  expectKillsResume(10, {"synthetic:plane?points=3e5", "synthetic:degenerate?points=1e5"}, {"--normals"});
+  expectKillsResume(6, {"synthetic:plane?points=1e5", "synthetic:degenerate?points=5e4"}, {"--normals"});
 }
 
 TEST(Resume, EndsThoughKilledAgainAndAgain) {
