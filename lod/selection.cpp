@@ -28,19 +28,6 @@ bool lessUrgent(const Selection::Candidate& a, const Selection::Candidate& b) {
   return a.selected.node > b.selected.node;
 }
 
-/// Square metres that one point of the whole node stands for. What is thinner than a pixel still fills a pixel's
-/// width, so a wire gets a point for each pixel of its length.
-double areaPerPoint(const NodeRecord& record, const Contour& contour, const ContourOnScreen& screen) {
-  if (record.contourClass == static_cast<std::uint8_t>(ContourClass::linear)) {
-    std::array<double, 3> half = contour.half;
-    std::sort(half.begin(), half.end());
-    return 2.0 * half[2] * std::max(2.0 * half[1], 1.0 / screen.pixelsPerMetre) / record.pointCount;
-  }
-  const double spacing = static_cast<double>(record.spacing);
-  const double byArea = screen.faceArea / record.pointCount;
-  return std::isfinite(spacing) && spacing >= 0.0 ? std::min(spacing * spacing, byArea) : byArea;
-}
-
 /// Points to draw of a node when `share` of the wanted density is to be reached; 0 = leave it out.
 std::uint32_t pointsAt(const Selection::Candidate& node, double share) {
   if (!node.root && share < 1.0 && !(share * static_cast<double>(node.selected.priority) > 1.0)) return 0;
@@ -167,6 +154,17 @@ void emit(std::uint64_t wanted, std::uint64_t budget, double highestShare, Selec
 }
 
 }  // namespace
+
+double areaPerPoint(const NodeRecord& record, const Contour& contour, const ContourOnScreen& screen) {
+  if (record.contourClass == static_cast<std::uint8_t>(ContourClass::linear)) {
+    std::array<double, 3> half = contour.half;
+    std::sort(half.begin(), half.end());
+    return 2.0 * half[2] * std::max(2.0 * half[1], 1.0 / screen.pixelsPerMetre) / record.pointCount;
+  }
+  const double spacing = static_cast<double>(record.spacing);
+  const double byArea = screen.faceArea / record.pointCount;
+  return std::isfinite(spacing) && spacing >= 0.0 ? std::min(spacing * spacing, byArea) : byArea;
+}
 
 double Selection::Candidate::density() const {
   if (pointCount == 0) return given;

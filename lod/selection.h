@@ -7,6 +7,7 @@
 #include "core/view.h"
 #include "io/store.h"
 #include "lod/coarse_depth.h"
+#include "lod/contour.h"
 
 namespace strata {
 
@@ -73,5 +74,9 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
 void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
                  const SelectionOptions& options, Selection& out);
 void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out);
+
+/// σ² of selectNodes(): square metres that one point of the whole node stands for. What is thinner than a pixel still
+/// fills a pixel's width, so a wire gets a point for each pixel of its length. The node has points.
+double areaPerPoint(const NodeRecord& record, const Contour& contour, const ContourOnScreen& screen);
 
 }  // namespace strata

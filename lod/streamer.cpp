@@ -111,6 +111,7 @@ StreamerStats Streamer::stats() const {
   StreamerStats s;
   s.nodesLoaded = counters_.nodesLoaded.load(std::memory_order_relaxed);
   s.bytesRead = counters_.bytesRead.load(std::memory_order_relaxed);
+  s.pointsLoaded = counters_.pointsLoaded.load(std::memory_order_relaxed);
   s.reads = counters_.reads.load(std::memory_order_relaxed);
   s.nodesAhead = counters_.nodesAhead.load(std::memory_order_relaxed);
   s.occluded = static_cast<std::uint32_t>(counters_.occluded.load(std::memory_order_relaxed));
@@ -324,6 +325,7 @@ void Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, 
   try {
     loader.decode(request, newestTask().selection.occlusion.enabled, *buffer);
     counters_.nodesLoaded.fetch_add(1, std::memory_order_relaxed);
+    counters_.pointsLoaded.fetch_add(buffer->pointCount(), std::memory_order_relaxed);
     if (request.ahead) counters_.nodesAhead.fetch_add(1, std::memory_order_relaxed);
     transfer_.giveFilled({request.node, std::move(buffer)});
   } catch (const std::exception& error) {

@@ -57,6 +57,7 @@ struct StreamerOptions {
 struct StreamerStats {
   std::uint64_t nodesLoaded = 0;   ///< read and decoded
   std::uint64_t bytesRead = 0;     ///< from the store
+  std::uint64_t pointsLoaded = 0;  ///< of nodesLoaded, each time again
   std::uint64_t reads = 0;         ///< that these bytes came in
   std::uint64_t nodesAhead = 0;    ///< of nodesLoaded, those for a view to come
   std::uint64_t failures = 0;      ///< loads that ended in an error
@@ -200,8 +201,8 @@ class Streamer {
 
   // Counters, relaxed: each is read by itself.
   struct Counters {
-    std::atomic<std::uint64_t> nodesLoaded{0}, nodesAhead{0}, bytesRead{0}, reads{0}, loadsDropped{0}, occluded{0},
-        occluders{0}, cacheHits{0}, cacheMisses{0}, overCapacity{0}, lodPasses{0}, lodNs{0}, lodNsTotal{0};
+    std::atomic<std::uint64_t> nodesLoaded{0}, nodesAhead{0}, pointsLoaded{0}, bytesRead{0}, reads{0}, loadsDropped{0},
+        occluded{0}, occluders{0}, cacheHits{0}, cacheMisses{0}, overCapacity{0}, lodPasses{0}, lodNs{0}, lodNsTotal{0};
   };
   Counters counters_;
 

@@ -103,6 +103,7 @@ StageTime stage(const std::string& name, const std::vector<FrameRecord>& frames,
 std::vector<std::pair<std::string, double>> counters(const StreamerStats& s) {
   const auto count = [](std::uint64_t value) { return static_cast<double>(value); };
   return {{"nodes loaded", count(s.nodesLoaded)},
+          {"points loaded", count(s.pointsLoaded)},
           {"bytes read", count(s.bytesRead)},
           {"failures", count(s.failures)},
           {"nodes given up", count(s.nodesGivenUp)},
@@ -153,6 +154,9 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
   flight.measures.lodMs = stats.lodMsMean;
   flight.measures.cacheHitRate = stats.hitRate();
   flight.measures.peakRssBytes = peakRssBytes();
+  double pixels = 0.0;
+  for (const FrameRecord& frame : flight.played.frames) pixels += static_cast<double>(frame.pixelsCovered);
+  if (pixels > 0.0) flight.measures.pointsReadPerPixel = static_cast<double>(stats.pointsLoaded) / pixels;
   flight.counters = counters(stats);
   return flight;
 }
@@ -168,10 +172,17 @@ std::size_t typicalRun(const std::vector<BenchMeasures>& runs) {
 
 /// Asks for the page cache to be emptied of the store's points; says how far that went.
 std::string dropPages(const Store& store) {
-  char text[64];
-  std::snprintf(text, sizeof text, "points.bin dropped, %.0f %% stayed",
+  char text[80];
+  std::snprintf(text, sizeof text, "cold: points.bin dropped (posix_fadvise), %.0f %% stayed",
                 100.0 * dropFromPageCache(store.points().name()));
   logInfo(std::string("page cache: ") + text);
+  return text;
+}
+
+std::string pagesAsTheyAre(const Store& store) {
+  char text[80];
+  std::snprintf(text, sizeof text, "left as it was: %.0f %% of points.bin in memory at the start",
+                100.0 * shareInPageCache(store.points().name()));
   return text;
 }
 
@@ -189,6 +200,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
       play.video = options.video;
     }
     play.pictures = run == 0;
+    play.store = store.get();
     if (options.cold && run > 0) dropPages(*store);
     flights.push_back(flyOnce(options, path, store, rasterizer, play));
     report.runs.push_back(flights.back().measures);
@@ -207,6 +219,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
                    stage("upload", report.frames, &FrameRecord::uploadMs, true),
                    stage("drawing", report.frames, &FrameRecord::drawMs, true),
                    stage("resolve to colour", report.frames, &FrameRecord::resolveMs, true),
+                   stage("of drawing, by the GPU's clock", report.frames, &FrameRecord::gpuMs, false),
                    stage("LOD pass", report.frames, &FrameRecord::lodMs, false)};
 }
 
@@ -256,8 +269,7 @@ BenchReport runBench(const BenchOptions& options) {
   const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(options.backend);
   makeFolder(options.output);
 
-  std::string pageCache = "left as it was";
-  if (options.cold) pageCache = dropPages(*store);
+  const std::string pageCache = options.cold ? dropPages(*store) : pagesAsTheyAre(*store);
   DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, options.colour);
   applyDrawFlags(options.draw, draw);
   draw.pointSize = options.pointSize;

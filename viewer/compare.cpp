@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "viewer/html_text.h"
+#include "viewer/measures.h"
 #include "viewer/text_file.h"
 
 namespace strata {
@@ -16,29 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-enum class Better { lower, higher, neither };
-
-struct Measure {
-  const char* name;
-  const char* pointer;  // JSON pointer inside "measures"
-  Better better;
-};
-
-// The longest frame and the points drawn are shown but not judged: one is an accident of the machine, the other
-// says what was drawn, not how well.
-constexpr Measure kMeasures[] = {
-    {"frame_ms p50", "/frame_ms/p50", Better::lower},
-    {"frame_ms p95", "/frame_ms/p95", Better::lower},
-    {"frame_ms p99", "/frame_ms/p99", Better::lower},
-    {"frame_ms max", "/frame_ms/max", Better::neither},
-    {"points_per_second", "/points_per_second", Better::higher},
-    {"points_drawn_mean", "/points_drawn_mean", Better::neither},
-    {"time_to_full_detail_ms", "/time_to_full_detail_ms", Better::lower},
-    {"lod_ms", "/lod_ms", Better::lower},
-    {"bytes_read", "/bytes_read", Better::lower},
-    {"cache_hit_rate", "/cache_hit_rate", Better::higher},
-    {"hitches", "/hitches", Better::lower},
-};
+using Better = MeasureField::Better;
 
 Json parseReport(const std::string& file, const std::string& text) {
   Json json = Json::parse(text, nullptr, false);
@@ -48,7 +27,11 @@ Json parseReport(const std::string& file, const std::string& text) {
   return json;
 }
 
-double numberAt(const std::string& file, const Json& report, const Measure& measure) {
+bool has(const Json& report, const MeasureField& measure) {
+  return report["measures"].contains(Json::json_pointer(measure.pointer));
+}
+
+double numberAt(const std::string& file, const Json& report, const MeasureField& measure) {
   const Json& measures = report["measures"];
   const Json::json_pointer where(measure.pointer);
   if (!measures.contains(where) || !measures[where].is_number())
@@ -56,7 +39,7 @@ double numberAt(const std::string& file, const Json& report, const Measure& meas
   return measures[where].get<double>();
 }
 
-MeasureChange change(const Measure& measure, double a, double b) {
+MeasureChange change(const MeasureField& measure, double a, double b) {
   MeasureChange result{measure.name, a, b, 1.0, 0.0, -1.0};
   if (a != b) result.ratio = a != 0.0 ? b / a : std::numeric_limits<double>::infinity();
   if (measure.better == Better::lower) result.worseBy = result.ratio - 1.0;
@@ -127,7 +110,9 @@ Comparison compareReports(const std::string& fileA, const std::string& jsonA, co
   const Json a = parseReport(fileA, jsonA);
   const Json b = parseReport(fileB, jsonB);
   Comparison comparison;
-  for (const Measure& measure : kMeasures) {
+  for (const MeasureField& measure : measureFields()) {
+    // What only one of them has is of a newer version; the first measure makes a report.
+    if (&measure != measureFields().data() && !(has(a, measure) && has(b, measure))) continue;
     comparison.changes.push_back(change(measure, numberAt(fileA, a, measure), numberAt(fileB, b, measure)));
     comparison.changes.back().noise = noiseOf(a, b, measure.name);
   }

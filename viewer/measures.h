@@ -17,6 +17,7 @@ struct FrameRecord {
   double resolveMs = 0.0;
   double settleMs = 0.0;            ///< waited for full detail before the frame (--settle), not in frameMs
   double lodMs = 0.0;               ///< newest LOD pass, on its own thread
+  double gpuMs = 0.0;               ///< of drawMs, by OpenGL's own clock; 0 for cpu
   std::uint64_t pointsDrawn = 0;    ///< sent through projection
   std::uint64_t pointsListed = 0;   ///< in the render list, before culling
   std::uint32_t nodes = 0;          ///< in the render list
@@ -27,6 +28,7 @@ struct FrameRecord {
   std::uint64_t residentBytes = 0;  ///< of decoded nodes in memory
   std::uint64_t gpuBytes = 0;       ///< of nodes in GPU memory
   std::uint64_t pixelsCovered = 0;  ///< that show a point
+  double widestSpacingPx = 0.0;     ///< see screen_spacing.h
   bool hitch = false;
 
   /// Share of the wanted nodes that are drawn, 0 to 1.
@@ -57,11 +59,14 @@ struct BenchMeasures {
   std::uint64_t bytesRead = 0;
   double cacheHitRate = 0.0;  ///< 0 to 1
   int hitches = 0;
-  double hitchesPerMinute = 0.0;   ///< of the sum of the frame times
-  double hitchTimeShare = 0.0;     ///< of that sum that hitches took, 0 to 1
-  double pointsPerPixelWon = 0.0;  ///< points sent through projection for each pixel that shows one
-  std::uint64_t peakRssBytes = 0;  ///< of the process, since it began
-  std::uint64_t gpuPeakBytes = 0;  ///< of node data
+  double hitchesPerMinute = 0.0;              ///< of the sum of the frame times
+  double hitchTimeShare = 0.0;                ///< of that sum that hitches took, 0 to 1
+  double pointsPerPixelWon = 0.0;             ///< points sent through projection for each pixel that shows one
+  double pointsReadPerPixel = 0.0;            ///< points read from the store for each of them
+  double gpuMs = 0.0;                         ///< mean of FrameRecord::gpuMs
+  double spacingP50 = 0.0, spacingP95 = 0.0;  ///< of FrameRecord::widestSpacingPx
+  std::uint64_t peakRssBytes = 0;             ///< of the process, since it began
+  std::uint64_t gpuPeakBytes = 0;             ///< of node data
   std::string backend;
   std::string device;
 };
@@ -85,6 +90,19 @@ struct MeasureNoise {
 };
 /// Nothing for fewer than two runs.
 std::vector<MeasureNoise> measureNoise(std::span<const BenchMeasures> runs);
+
+/// A measure that runs are compared by, under the name it has in text and its place in the JSON.
+struct MeasureField {
+  enum class Better { lower, higher, neither };
+
+  const char* name;     ///< "frame_ms p50"
+  const char* pointer;  ///< JSON pointer, "/frame_ms/p50"
+  Better better;
+  bool whole;  ///< a count
+  double (*get)(const BenchMeasures&);
+  void (*set)(BenchMeasures&, double);
+};
+std::span<const MeasureField> measureFields();
 
 /// One line of JSON.
 std::string measuresJson(const BenchMeasures& measures);

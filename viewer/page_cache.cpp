@@ -29,6 +29,15 @@ double residentShare(int file, std::size_t bytes) {
 
 }  // namespace
 
+double shareInPageCache(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) throw posixError(path, "opening", errno);
+  struct stat status {};
+  const double share = fstat(file, &status) == 0 ? residentShare(file, static_cast<std::size_t>(status.st_size)) : 0.0;
+  ::close(file);
+  return share;
+}
+
 double dropFromPageCache(const std::string& path) {
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) throw posixError(path, "opening", errno);

@@ -10,6 +10,8 @@
 #include <thread>
 #include <utility>
 
+#include "lod/hierarchy_index.h"
+#include "viewer/screen_spacing.h"
 #include "viewer/video.h"
 
 namespace strata {
@@ -139,6 +141,7 @@ FrameRecord drawFrame(const View& view, const PlayOptions& options, int index, S
   record.missingNodes = list.missingNodes;
   record.bytesUploaded = stats.bytesUploaded;
   record.gpuBytes = stats.gpuBytes;
+  record.gpuMs = stats.gpuMs;
   return record;
 }
 
@@ -157,6 +160,8 @@ Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer
 PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer) {
   const int frames = path.frames();
   const PathClock clock(path);
+  const HierarchyIndex hierarchy =
+      options.store != nullptr ? indexHierarchy(options.store->hierarchy()) : HierarchyIndex{};
   const auto view = [&](int index) {
     View v =
         viewAt(path, clock.keyTime(path.keys.front().t + index / path.fps), options.size.width, options.size.height);
@@ -214,6 +219,8 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
     record.queueLength = stats.queueLength;
     record.residentBytes = stats.residentBytes;
     record.pixelsCovered = coveredPixels(frame);
+    if (options.store != nullptr)
+      record.widestSpacingPx = widestSpacing(options.store->hierarchy(), hierarchy, *list, now, frame);
     record.hitch = index > 0 && isHitch(played.frames.back().frameMs, record.frameMs);
     played.frames.push_back(record);
     if (options.pictures) span.next("keep pictures");

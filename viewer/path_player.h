@@ -20,8 +20,9 @@ struct PlayOptions {
   std::string folder;  ///< for the pictures
   std::string video;   ///< film of every frame; empty = none
   double nearPlane = 0.01;
-  bool pictures = true;       ///< false: none at all, marked frames neither
-  TraceLane* lane = nullptr;  ///< gets what this thread does
+  bool pictures = true;          ///< false: none at all, marked frames neither
+  const Store* store = nullptr;  ///< of the streamer, for the widest spacing on the screen; null = not measured
+  TraceLane* lane = nullptr;     ///< gets what this thread does
 };
 
 /// What a flight left behind.

@@ -158,6 +158,33 @@ TEST_F(Bench, WithoutATraceThereIsNone) {
   EXPECT_FALSE(std::filesystem::exists(file("untraced") / "trace.json"));
 }
 
+// --- measures
+
+TEST_F(Bench, TheWidestSpacingIsWhatThePointsAPixelPromiseAndMoreWhereTheBudgetEnds) {
+  ASSERT_EQ(fly("whole", {"--size", "320x180", "--settle", "--occlusion", "off"}).exitCode, 0);
+  ASSERT_EQ(fly("scarce", {"--size", "320x180", "--settle", "--occlusion", "off", "--point-budget", "20000"}).exitCode,
+            0);
+  const std::vector<double> whole = column("whole", "widest_spacing_px");
+  const std::vector<double> scarce = column("scarce", "widest_spacing_px");
+  ASSERT_EQ(whole.size(), scarce.size());
+  const double promised = 1.0 / std::sqrt(1.8);
+  std::vector<double> sorted = whole;
+  std::sort(sorted.begin(), sorted.end());
+  EXPECT_NEAR(sorted[sorted.size() / 2], promised, 1e-2);
+  EXPECT_LE(sorted.back(), 1.1 * promised);  // small nodes round to whole points
+  EXPECT_GE(*std::min_element(scarce.begin(), scarce.end()), promised - 1e-3);
+  EXPECT_GT(*std::max_element(scarce.begin(), scarce.end()), 1.2 * promised);
+}
+
+TEST_F(Bench, TheReportSaysWhatWasInThePageCache) {
+  ASSERT_EQ(fly("cold", {"--size", "160x90", "--cold"}).exitCode, 0);
+  const std::string cold = report("cold").at("options").at("page cache");
+  EXPECT_EQ(cold.find("cold: points.bin dropped (posix_fadvise), "), 0u) << cold;
+  const std::string warm = report("flight").at("options").at("page cache");
+  EXPECT_EQ(warm.find("left as it was: "), 0u) << warm;
+  EXPECT_GT(report("flight").at("measures").at("points_read_per_pixel").get<double>(), 0.0);
+}
+
 // --- the papers' tables
 
 /// Every table's rows, without the header and the line under it; each must have as many cells as its header.
