@@ -32,6 +32,7 @@ enum class Precision : std::uint8_t { low10 = 1, medium20 = 2, full30 = 3 };
 struct NodeData {
   NodeKey key;
   glm::dvec3 origin{0.0};                    ///< world
+  float spacing = 0.0f;                      ///< metres between neighbours when all points are drawn; 0: not known
   std::vector<Batch> batches;                ///< by ascending firstPoint; cover all points
   std::vector<std::uint32_t> position[3];    ///< x | y<<10 | z<<20; [1] and [2] are empty when not loaded
   std::vector<std::uint32_t> colour;         ///< R | G<<8 | B<<16 | 255<<24; empty when the store has none

@@ -305,6 +305,7 @@ void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span
                       Precision precision, NodeData& out) {
   PayloadReader payload(record, bytes);
   out.key = NodeKey{record.key};
+  out.spacing = record.spacing;
   describeBatches(payload.head(), info, out);
   for (int plane = 0; plane < 3; ++plane) {
     if (plane >= static_cast<int>(precision)) {
