@@ -5,7 +5,9 @@
 
 #include "render/batch_plan.h"
 #include "render/colour_map.h"
+#include "render/flood_fill.h"
 #include "render/point_colour.h"
+#include "render/point_place.h"
 #include "render/post_process.h"
 
 namespace strata {
@@ -13,50 +15,6 @@ namespace {
 
 constexpr std::size_t kPixelsAhead = 32;
 constexpr std::size_t kRowsAtOnce = 16;
-
-/// Where a point lies.
-struct PointPlace {
-  const NodeData* node;
-  std::uint32_t index;
-};
-
-/// Finds the node of an id: a table says which items a block of ids meets, a search among those finishes.
-class PointLookup {
- public:
-  explicit PointLookup(const RenderList& list) {
-    for (const RenderItem& item : list.items) {
-      starts_.push_back(starts_.back() + item.pointCount);
-      nodes_.push_back(item.node.get());
-    }
-    std::uint32_t item = 0;
-    for (std::uint64_t id = 0; id < starts_.back(); id += kBlock) {
-      while (starts_[item + 1] <= id) ++item;
-      itemAt_.push_back(item);
-    }
-    if (!list.items.empty()) itemAt_.push_back(static_cast<std::uint32_t>(list.items.size() - 1));
-  }
-
-  PointPlace find(std::uint32_t id) const {
-    const std::uint32_t block = id / kBlock;
-    std::size_t item = itemAt_[block];
-    if (const std::size_t last = itemAt_[block + 1]; last > item + kFewItems)
-      item = static_cast<std::size_t>(std::upper_bound(starts_.begin() + static_cast<std::ptrdiff_t>(item) + 1,
-                                                       starts_.begin() + static_cast<std::ptrdiff_t>(last) + 1, id) -
-                                      starts_.begin()) -
-             1;
-    else
-      while (item < last && starts_[item + 1] <= id) ++item;
-    return {nodes_[item], id - starts_[item]};
-  }
-
- private:
-  static constexpr std::uint32_t kBlock = 4096;
-  static constexpr std::size_t kFewItems = 8;  ///< quicker one by one
-
-  std::vector<const NodeData*> nodes_;
-  std::vector<std::uint32_t> starts_{0};  ///< first id of each item, then the end
-  std::vector<std::uint32_t> itemAt_;     ///< of the first id of each block; the last item at the end
-};
 
 /// How densely the pixels of an overdraw picture are covered: the count that gets the last colour.
 std::uint32_t largestCount(const std::vector<std::uint32_t>& counts) {
@@ -111,7 +69,7 @@ class Colouring {
     PointPlace places[kPixelsAhead];
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t id = pixelId(buffer_.pixels[i]);
-      places[i - begin] = id == Frame::kNoPoint || blended_ ? PointPlace{nullptr, 0} : lookup_.find(id);
+      places[i - begin] = id == Frame::kNoPoint || blended_ ? PointPlace{} : lookup_.find(id);
       if (places[i - begin].node != nullptr)
         prefetchColour(*places[i - begin].node, places[i - begin].index, options_.colour);
     }
@@ -135,7 +93,7 @@ class Colouring {
     return heatColour(std::log2(std::max(count, 1u)) / std::log2(largestCount_));
   }
 
-  PointLookup lookup_;
+  PointFinder lookup_;
   ViewConstants constants_;
   const DrawOptions& options_;
   const VisibilityBuffer& buffer_;
@@ -216,6 +174,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
         finishRow(buffer, view, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
     });
   }
+  if (options.jumpFlood) floodFill(list, view, {}, pool, frame);
   if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);
 }
 

@@ -39,9 +39,11 @@ bool drawSettings(ViewerSettings& settings) {
     settings.draw.shading = blended ? Shading::highQuality : Shading::plain;
     changed = true;
   }
-  int fill = settings.draw.fill / 2;
-  if (ImGui::Combo("fill holes", &fill, "no\0003 x 3\0005 x 5\0007 x 7\0")) {
-    settings.draw.fill = 2 * fill + 1;
+  constexpr int kJumpFlood = 4;
+  int fill = settings.draw.jumpFlood ? kJumpFlood : settings.draw.fill / 2;
+  if (ImGui::Combo("fill holes", &fill, "no\0003 x 3\0005 x 5\0007 x 7\0by jump flooding\0")) {
+    settings.draw.jumpFlood = fill == kJumpFlood;
+    settings.draw.fill = settings.draw.jumpFlood ? 1 : 2 * fill + 1;
     changed = true;
   }
   changed = ImGui::Checkbox("eye-dome lighting", &settings.draw.edl) || changed;

@@ -85,6 +85,13 @@ TEST(RasterizerGolden, ClassesOfAClipBoxWithItsHolesFilled) {
   expectGolden("town_clip_fill", options);
 }
 
+TEST(RasterizerGolden, HolesFilledByJumpFlooding) {
+  DrawOptions options;
+  options.jumpFlood = true;
+  options.edl = true;
+  expectGolden("town_jump_flood", options);
+}
+
 TEST(RasterizerGolden, Overdraw) {
   DrawOptions options;
   options.colour = ColourMode::overdraw;

@@ -25,10 +25,10 @@ TEST(DrawFlags, BecomeDrawOptions) {
   const DrawFlags flags{.shading = "hq",
                         .classes = "2",
                         .background = "000102,030405",
+                        .fill = "5",
                         .range = {10.0, 20.0},
                         .clipBoxes = {{5.0, 6.0, 7.0, 1.0, 2.0, 3.0}},  // corners in any order
-                        .clipPlanes = {{1.0, 0.0, 0.0, -4.0}},
-                        .fill = 5};
+                        .clipPlanes = {{1.0, 0.0, 0.0, -4.0}}};
   DrawOptions draw;
   applyDrawFlags(flags, draw);
   EXPECT_EQ(draw.shading, Shading::highQuality);
@@ -41,6 +41,15 @@ TEST(DrawFlags, BecomeDrawOptions) {
   EXPECT_EQ(draw.clip.boxes.at(0).min, glm::dvec3(1.0, 2.0, 3.0));
   EXPECT_EQ(draw.clip.boxes.at(0).max, glm::dvec3(5.0, 6.0, 7.0));
   EXPECT_EQ(draw.clip.planes.at(0), glm::dvec4(1.0, 0.0, 0.0, -4.0));
+}
+
+TEST(DrawFlags, FillByJumpFloodingInPlaceOfAWindow) {
+  DrawFlags flags;
+  flags.fill = "jump-flood";
+  DrawOptions draw;
+  applyDrawFlags(flags, draw);
+  EXPECT_TRUE(draw.jumpFlood);
+  EXPECT_EQ(draw.fill, 1);
 }
 
 TEST(DrawFlags, LeaveTheOptionsAloneWhenNoneIsGiven) {

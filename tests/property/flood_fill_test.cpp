@@ -1,0 +1,306 @@
+// Hole filling by jump flooding: its searches against looking at every seed, and what it fills and leaves open.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "render/flood_fill.h"
+#include "render/flood_search.h"
+#include "render/rasterizer.h"
+#include "tests/support/fill_judge.h"
+#include "tests/support/synthetic_nodes.h"
+
+namespace strata {
+namespace {
+
+constexpr std::uint32_t kNone = FloodSeeds::kNone;
+constexpr glm::dvec3 kUtm(456789.0, 5412345.0, 300.0);
+
+const ThreadPool& pool() {
+  static const ThreadPool two(2);
+  return two;
+}
+
+/// `share` of the pixels hold a seed, on one or two planes ahead, as far apart as pixels are.
+FloodSeeds randomSeeds(int width, int height, double share, int planes, std::uint32_t seed) {
+  std::mt19937 random(seed);
+  std::bernoulli_distribution stays(share);
+  std::uniform_real_distribution<float> within(0.0f, 1.0f);
+  FloodSeeds seeds;
+  seeds.width = width;
+  seeds.height = height;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      seeds.at.push_back(kNone);
+      if (!stays(random)) continue;
+      FloodSeed one{};
+      const float depth = 1000.0f + 1000.0f * static_cast<float>(random() % static_cast<unsigned>(planes));
+      one.position = {static_cast<float>(x) + within(random), -static_cast<float>(y) - within(random), depth};
+      one.reach = 40.0f;
+      one.reachPx = 40.0f;
+      one.x = static_cast<std::uint16_t>(x);
+      one.y = static_cast<std::uint16_t>(y);
+      seeds.at.back() = static_cast<std::uint32_t>(seeds.seeds.size());
+      seeds.seeds.push_back(one);
+    }
+  return seeds;
+}
+
+int distance2(const FloodSeed& seed, int x, int y) { return (seed.x - x) * (seed.x - x) + (seed.y - y) * (seed.y - y); }
+
+float metresApart(const FloodSeeds& seeds, std::uint32_t a, std::uint32_t b) {
+  return glm::length(seeds.seeds[a].position - seeds.seeds[b].position);
+}
+
+TEST(FloodLayers, HoldTheSeedOfEachPlaneThatIsClosestToThePixel) {
+  const FloodSettings settings;
+  for (const double share : {0.3, 0.05, 0.01}) {
+    const FloodSeeds seeds = randomSeeds(120, 90, share, 2, 7);
+    const auto layers = findLayers(seeds, 32, settings, pool());
+    std::size_t wanted = 0, found = 0;
+    for (int y = 0; y < seeds.height; ++y)
+      for (int x = 0; x < seeds.width; ++x)
+        for (const float plane : {1000.0f, 2000.0f}) {
+          const auto nearest = [&](auto first, auto last, auto seedOf) {
+            int least = 35 * 35;  // within the reach, with room
+            for (auto it = first; it != last; ++it) {
+              const std::uint32_t s = seedOf(it);
+              if (s != kNone && seeds.seeds[s].position.z == plane)
+                least = std::min(least, distance2(seeds.seeds[s], x, y));
+            }
+            return least;
+          };
+          const FloodLayers& here = layers[static_cast<std::size_t>(y * seeds.width + x)];
+          const int truth =
+              nearest(std::size_t{0}, seeds.seeds.size(), [](std::size_t i) { return static_cast<std::uint32_t>(i); });
+          if (truth == 35 * 35) continue;
+          ++wanted;
+          found += nearest(here.begin(), here.end(), [](auto it) { return *it; }) == truth;
+        }
+    EXPECT_GE(static_cast<double>(found), 0.98 * static_cast<double>(wanted)) << "share " << share;
+  }
+}
+
+TEST(FloodLayers, KeepASparseForegroundInFrontOfADenseBackground) {
+  FloodSeeds seeds = randomSeeds(120, 90, 0.5, 1, 3);
+  std::mt19937 random(5);
+  for (FloodSeed& seed : seeds.seeds) seed.position.z = random() % 50 == 0 ? 1000.0f : 2000.0f;
+  const auto layers = findLayers(seeds, 32, {}, pool());
+  std::size_t with = 0;
+  for (const FloodLayers& here : layers)
+    with += std::any_of(here.begin(), here.end(),
+                        [&](std::uint32_t s) { return s != kNone && seeds.seeds[s].position.z == 1000.0f; });
+  EXPECT_GE(static_cast<double>(with), 0.999 * static_cast<double>(layers.size()));
+}
+
+/// Share of the true neighbours that were found, and how much farther on average what was found is.
+struct Recall {
+  double found = 0.0, farther = 0.0;
+};
+
+Recall recallOf(const FloodSeeds& seeds, const FloodSettings& settings) {
+  const auto layers = findLayers(seeds, 32, settings, pool());
+  const auto neighbours = findNeighbours(seeds, layers, 32, settings, pool());
+  double wanted = 0.0, found = 0.0, farther = 0.0;
+  for (std::uint32_t s = 0; s < seeds.seeds.size(); ++s) {
+    std::vector<float> truth[kFloodNeighbours];  // of each sector, or all in the first
+    for (std::uint32_t other = 0; other < seeds.seeds.size(); ++other) {
+      if (other == s || !sameLayer(seeds.seeds[s], seeds.seeds[other], settings)) continue;
+      const int dx = seeds.seeds[other].x - seeds.seeds[s].x, dy = seeds.seeds[other].y - seeds.seeds[s].y;
+      const int sector = floodSector(static_cast<float>(dx), static_cast<float>(dy));
+      truth[settings.sectors ? sector : 0].push_back(metresApart(seeds, s, other));
+    }
+    for (auto& distances : truth) std::sort(distances.begin(), distances.end());
+    for (std::size_t i = 0; i < kFloodNeighbours; ++i) {
+      const std::vector<float>& distances = truth[settings.sectors ? i : 0];
+      const std::size_t rank = settings.sectors ? 0 : i;
+      if (rank >= distances.size() || (!settings.sectors && i >= 4)) continue;
+      wanted += 1.0;
+      if (neighbours[s][i] == kNone) continue;
+      const float apart = metresApart(seeds, s, neighbours[s][i]);
+      found += apart == distances[rank] ? 1.0 : 0.0;
+      farther += apart / distances[rank] - 1.0;
+    }
+  }
+  return {found / wanted, farther / wanted};
+}
+
+TEST(FloodNeighbours, AreTheClosestOfEachSectorUpToATolerance) {
+  for (const double share : {0.5, 0.1, 0.02}) {
+    const Recall recall = recallOf(randomSeeds(100, 80, share, 1, 11), {});
+    EXPECT_GE(recall.found, 0.9) << "share " << share;
+    EXPECT_LE(recall.farther, 0.02) << "share " << share;
+  }
+}
+
+TEST(FloodNeighbours, AreTheFourClosestUpToATolerance) {
+  FloodSettings settings;
+  settings.sectors = false;
+  for (const double share : {0.5, 0.1, 0.02}) {
+    const Recall recall = recallOf(randomSeeds(100, 80, share, 1, 11), settings);
+    EXPECT_GE(recall.found, 0.95) << "share " << share;
+    EXPECT_LE(recall.farther, 0.02) << "share " << share;
+  }
+}
+
+TEST(FloodNeighbours, AreOfTheSamePlaneWhereTwoAreMixed) {
+  const FloodSeeds seeds = randomSeeds(100, 80, 0.3, 2, 2);
+  const auto neighbours = findNeighbours(seeds, findLayers(seeds, 32, {}, pool()), 32, {}, pool());
+  for (std::size_t s = 0; s < seeds.seeds.size(); ++s)
+    for (const std::uint32_t other : neighbours[s])
+      if (other != kNone) {
+        ASSERT_EQ(seeds.seeds[other].position.z, seeds.seeds[s].position.z);
+      }
+}
+
+/// Points on the plane y = `distance`, one in each cell of `spacing` over [-half, half] in x and z, where keep(x, z).
+template <typename Keep>
+std::shared_ptr<const NodeData> wall(int number, double distance, double half, double spacing, Keep keep) {
+  std::mt19937 random(static_cast<std::uint32_t>(number));
+  std::uniform_real_distribution<double> within(0.0, 1.0);
+  std::vector<glm::dvec3> points;
+  for (double x = -half; x < half; x += spacing)
+    for (double z = -half; z < half; z += spacing) {
+      const glm::dvec3 p(x + within(random) * spacing, distance, z + within(random) * spacing);
+      if (keep(p.x, p.z)) points.push_back(kUtm + p);
+    }
+  std::shuffle(points.begin(), points.end(), random);
+  auto node = std::make_shared<NodeData>(*test::makeNode(NodeKey().child(number), points, 0.001));
+  node->spacing = static_cast<float>(spacing);
+  return node;
+}
+
+View ahead(int width = 300, int height = 200) {
+  View view;
+  view.eye = kUtm;
+  view.target = kUtm + glm::dvec3(0.0, 1.0, 0.0);
+  view.fovY = 1.0;
+  view.width = width;
+  view.height = height;
+  return view;
+}
+
+Frame drawn(const RenderList& list, const View& view, bool jumpFlood) {
+  DrawOptions options;
+  options.jumpFlood = jumpFlood;
+  Frame frame;
+  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
+  return frame;
+}
+
+constexpr auto kEverywhere = [](double, double) { return true; };
+
+/// x and z of a pixel's middle on the plane y = `distance`.
+glm::dvec2 onWall(const View& view, std::size_t pixel, double distance) {
+  const double perPixel = distance / pixelsAt(view, 1.0, 1.0);
+  const auto x = static_cast<double>(pixel % static_cast<std::size_t>(view.width)),
+             y = static_cast<double>(pixel / static_cast<std::size_t>(view.width));
+  return {(x + 0.5 - 0.5 * view.width) * perPixel, (0.5 * view.height - y - 0.5) * perPixel};
+}
+
+TEST(FloodFill, ClosesASparseWall) {
+  const RenderList list = test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)});  // 6 pixels apart
+  const Frame frame = drawn(list, ahead(), true);
+  std::size_t open = 0;
+  for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
+  EXPECT_LE(open, frame.depth.size() / 100);
+}
+
+TEST(FloodFill, LeavesAFullPictureAsItIs) {
+  const RenderList walls = test::makeList({wall(1, 10.0, 12.0, 0.02, kEverywhere)});
+  const Frame before = drawn(walls, ahead(), false), after = drawn(walls, ahead(), true);
+  ASSERT_EQ(std::count(before.pointId.begin(), before.pointId.end(), Frame::kNoPoint), 0);
+  EXPECT_EQ(before.colour, after.colour);
+  EXPECT_EQ(before.depth, after.depth);
+  EXPECT_EQ(before.pointId, after.pointId);
+}
+
+TEST(FloodFill, LeavesAWindowOpenWhateverLiesBehind) {
+  const auto beside = [](double x, double z) { return std::abs(x) > 2.5 || std::abs(z) > 2.0; };
+  const double spacing = 0.3;
+  for (const bool background : {false, true}) {
+    std::vector<std::shared_ptr<const NodeData>> nodes{wall(1, 10.0, 12.0, spacing, beside)};
+    if (background) nodes.push_back(wall(2, 40.0, 45.0, 0.15, kEverywhere));
+    const RenderList list = test::makeList(nodes);
+    const View view = ahead();
+    const Frame before = drawn(list, view, false), after = drawn(list, view, true);
+    std::size_t window = 0, changed = 0, sparse = 0, open = 0;
+    for (std::size_t i = 0; i < before.depth.size(); ++i) {
+      const glm::dvec2 place = onWall(view, i, 10.0);
+      if (std::abs(place.x) < 2.5 - 1.5 * spacing && std::abs(place.y) < 2.0 - 1.5 * spacing) {
+        ++window;
+        changed += after.depth[i] < 30.0f;
+      } else if (beside(place.x, place.y)) {
+        ++sparse;
+        open += after.depth[i] > 10.1f;
+      }
+    }
+    ASSERT_GT(window, 3000u);
+    EXPECT_LE(changed, window / 500) << background;
+    EXPECT_LE(open, sparse / 100) << background;
+  }
+}
+
+/// Farias 2014, Fig. 5.18: columns of few points before a wall of many.
+TEST(FloodFill, ClosesASparseForegroundButNotTheGapsBetweenItsParts) {
+  const double spacing = 0.25;
+  const auto columns = [](double x, double) { return std::abs(std::remainder(x, 4.0)) < 1.0; };
+  const RenderList list =
+      test::makeList({wall(1, 10.0, 12.0, spacing, columns), wall(2, 30.0, 33.0, 0.1, kEverywhere)});
+  const View view = ahead();
+  const Frame after = drawn(list, view, true);
+  std::size_t column = 0, through = 0, gap = 0, filled = 0;
+  for (std::size_t i = 0; i < after.depth.size(); ++i) {
+    const double off = std::abs(std::remainder(onWall(view, i, 10.0).x, 4.0));
+    if (off < 1.0 - 0.5 * spacing) {
+      ++column;
+      through += after.depth[i] > 20.0f;
+    } else if (off > 1.0 + spacing) {
+      ++gap;
+      filled += after.depth[i] < 20.0f;
+    }
+  }
+  EXPECT_LE(through, column / 100);
+  EXPECT_LE(filled, gap / 200);
+}
+
+TEST(FloodFill, MakesNothingOfSinglePoints) {
+  std::vector<std::shared_ptr<const NodeData>> nodes;
+  const RenderList list = test::makeList({wall(1, 10.0, 12.0, 3.0, [](double, double) { return true; })});
+  auto lonely = std::make_shared<NodeData>(*list.items[0].node);
+  lonely->spacing = 0.1f;  // far less than they lie apart
+  const RenderList apart = test::makeList({lonely});
+  EXPECT_EQ(drawn(apart, ahead(), false).colour, drawn(apart, ahead(), true).colour);
+}
+
+TEST(FloodFill, IsTheSameForAnyNumberOfThreads) {
+  const RenderList list = test::thinned(test::makeTown(kUtm, 100.0, 60000, 1, 4), 0.5, 1);
+  View view = viewOfBox(test::boundsOf(list), {1.0, 0.8, -0.6}, 320, 240, 1.0);
+  view.eye = view.target + (view.eye - view.target) * 0.5;
+  Frame one = drawn(list, view, false), several = one;
+  EXPECT_GT(floodFill(list, view, {}, ThreadPool(1), one).filled, 1000u);
+  floodFill(list, view, {}, ThreadPool(4), several);
+  EXPECT_EQ(one.colour, several.colour);
+  EXPECT_EQ(one.depth, several.depth);
+  EXPECT_EQ(one.pointId, several.pointId);
+}
+
+TEST(FloodFill, WorksWithoutPerspectiveToo) {
+  View view = ahead();
+  view.orthographic = true;
+  view.orthographicHeight = 10.0;
+  const Frame frame = drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), view, true);
+  std::size_t open = 0;
+  for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
+  EXPECT_LE(open, frame.depth.size() / 100);
+}
+
+TEST(FloodFill, TakesEmptyAndTinyPictures) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {7, 1}, {3, 3}}) {
+    drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), ahead(width, height), true);
+    EXPECT_EQ(drawn({}, ahead(width, height), true).pointId[0], Frame::kNoPoint);
+  }
+}
+
+}  // namespace
+}  // namespace strata
