@@ -25,7 +25,8 @@ struct ProgressiveStats {
   std::uint64_t filled = 0;       ///< places gone over
   std::uint64_t written = 0;      ///< points put into the pool
   std::uint64_t cursor = 0;       ///< place at which the next frame goes on
-  /// By OpenGL's clock: emptying the pixels, then the passes over the kept points and over the pool.
+  /// By OpenGL's clock, on the CPU by its own: emptying the pixels; depths of the kept points, of the range of the
+  /// pool; lowest ids of both; keeping.
   double clearMs = 0.0, reprojectMs = 0.0, fillMs = 0.0, indexMs = 0.0, keepMs = 0.0;
   double uploadMs = 0.0, readMs = 0.0, resolveMs = 0.0;  ///< of the render thread
 };

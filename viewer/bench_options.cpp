@@ -43,6 +43,7 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->capture_default_str();
   app.add_flag("--edl", o.edl, "eye-dome lighting");
   addDrawFlags(app, o.draw);
+  addProgressiveFlags(app, o.progressive);
   app.add_option("--occlusion", raw.occlusion,
                  "on: closed surfaces hide what is behind; exact: only where they leave no pixel open; off")
       ->check(CLI::IsMember({"on", "exact", "off"}))
@@ -113,6 +114,7 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   if (raw.occlusion == "exact") occlusion = OcclusionOptions::exact();
   occlusion.enabled = raw.occlusion != "off";
   options.backend = parseBackend(raw.backend);
+  checkProgressive(options.progressive, raw.backend, options.draw);
   options.size = parseSize(raw.size);
   options.colour = colourOf(options.draw);
   DrawOptions checked;

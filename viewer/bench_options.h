@@ -9,6 +9,7 @@
 #include "render/rasterizer.h"
 #include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
+#include "viewer/progressive_flags.h"
 #include "viewer/suite.h"
 
 namespace strata {
@@ -28,6 +29,7 @@ struct BenchOptions {
   StreamerOptions streamer;
   std::optional<ColourMode> colour;
   DrawFlags draw;
+  ProgressiveFlags progressive;
   int pointSize = 1;
   bool edl = false;
   bool cold = false;

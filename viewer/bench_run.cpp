@@ -73,19 +73,21 @@ Facts storeFacts(const Store& store) {
 Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::string& pageCache) {
   char density[32];
   std::snprintf(density, sizeof density, "%g", o.streamer.selection.pointsPerPixel);
-  return {{"path", o.path.empty() ? "none" : std::filesystem::path(o.path).filename().string()},
-          {"size", std::to_string(o.size.width) + "x" + std::to_string(o.size.height)},
-          {"point budget", readableCount(static_cast<double>(o.streamer.selection.pointBudget))},
-          {"points a pixel", density},
-          {"point size", std::to_string(draw.pointSize)},
-          {"colour", colourName(draw.colour)},
-          {"shading", draw.shading == Shading::highQuality ? "high quality" : "plain"},
-          {"eye-dome lighting", draw.edl ? "yes" : "no"},
-          {"loader threads", std::to_string(o.streamer.loaderThreads)},
-          {"cache", readableBytes(static_cast<double>(o.streamer.cacheBytes))},
-          {"frames wait for detail", o.settle ? "yes" : "no"},
-          {"repetitions", std::to_string(o.repeat)},
-          {"page cache", pageCache}};
+  return {
+      {"path", o.path.empty() ? "none" : std::filesystem::path(o.path).filename().string()},
+      {"size", std::to_string(o.size.width) + "x" + std::to_string(o.size.height)},
+      {"point budget", readableCount(static_cast<double>(o.streamer.selection.pointBudget))},
+      {"progressive", o.progressive.millions > 0.0 ? readableCount(1e6 * o.progressive.millions) + " a frame" : "no"},
+      {"points a pixel", density},
+      {"point size", std::to_string(draw.pointSize)},
+      {"colour", colourName(draw.colour)},
+      {"shading", draw.shading == Shading::highQuality ? "high quality" : "plain"},
+      {"eye-dome lighting", draw.edl ? "yes" : "no"},
+      {"loader threads", std::to_string(o.streamer.loaderThreads)},
+      {"cache", readableBytes(static_cast<double>(o.streamer.cacheBytes))},
+      {"frames wait for detail", o.settle ? "yes" : "no"},
+      {"repetitions", std::to_string(o.repeat)},
+      {"page cache", pageCache}};
 }
 
 StageTime stage(const std::string& name, const std::vector<FrameRecord>& frames, double FrameRecord::*member,
@@ -159,6 +161,13 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
   if (pixels > 0.0) flight.measures.pointsReadPerPixel = static_cast<double>(stats.pointsLoaded) / pixels;
   flight.counters = counters(stats);
   return flight;
+}
+
+std::unique_ptr<Rasterizer> createAnyRasterizer(const BenchOptions& options, const Store& store) {
+  if (options.progressive.millions == 0.0) return createWindowlessRasterizer(options.backend);
+  const std::uint64_t budget = options.streamer.selection.pointBudget;
+  return createProgressiveRasterizer(createHeadlessContext(),
+                                     progressiveOptions(options.progressive, budget, store.info().points));
 }
 
 /// The run whose median frame time is the (lower) median one.
@@ -266,7 +275,7 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
 
 BenchReport runBench(const BenchOptions& options) {
   const auto store = std::make_shared<const Store>(options.store);
-  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(options.backend);
+  const std::unique_ptr<Rasterizer> rasterizer = createAnyRasterizer(options, *store);
   makeFolder(options.output);
 
   const std::string pageCache = options.cold ? dropPages(*store) : pagesAsTheyAre(*store);

@@ -41,7 +41,7 @@ bool FilmTaker::goOn(std::chrono::milliseconds patience) {
   DrawStats stats;
   do {
     stats = rasterizer_.draw(list, view, order_.draw, frame_);
-  } while (stats.nodesNotUploaded > 0 && stats.bytesUploaded > 0);
+  } while (!isFinished(stats));
   video_.add(imageOf(frame_));
   if (++index_ < frames_) return false;
   video_.finish();

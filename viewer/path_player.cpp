@@ -20,7 +20,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for full detail of one view
 constexpr std::chrono::milliseconds kDetailStep{2};         // how finely the detail of the first view is watched
-constexpr int kMostUploadFrames = 1000;
+constexpr int kMostUploadFrames = 100'000;
 constexpr double kAheadSeconds = 0.5;      // for how far along the path nodes are loaded before they are seen
 constexpr int kReportPictures = 16;        // that the report shows
 constexpr std::size_t kHeldPictures = 24;  // waiting to be encoded; 8 MB each at 1920x1080
@@ -153,7 +153,7 @@ Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer
   streamer.waitUntilComplete(kLongestWait);
   const RenderList& list = streamer.beginFrame();
   for (int i = 0; i < kMostUploadFrames; ++i)
-    if (rasterizer.draw(list, view, draw, frame).nodesNotUploaded == 0) break;
+    if (isFinished(rasterizer.draw(list, view, draw, frame))) break;
   return frame;
 }
 

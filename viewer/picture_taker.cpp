@@ -96,7 +96,7 @@ bool PictureTaker::goOn(std::chrono::milliseconds patience) {
   DrawStats stats;
   do {
     stats = rasterizer_.draw(list, drawn, order_.draw, frame_);
-  } while (stats.nodesNotUploaded > 0 && stats.bytesUploaded > 0);
+  } while (!isFinished(stats));
   const bool fits = stats.nodesNotUploaded == 0 && layers_.stats().overCapacity == overCapacityBefore_;
   open_.pop_back();
   if (!fits && std::max(part.width, part.height) > kLeastPartSide && order_.draw.colour != ColourMode::overdraw) {

@@ -15,6 +15,7 @@
 #include "viewer/panel.h"
 #include "viewer/point_lookup.h"
 #include "viewer/profile_panel.h"
+#include "viewer/progressive_panel.h"
 #include "viewer/project.h"
 #include "viewer/scan_conversion.h"
 #include "viewer/scene.h"
@@ -70,6 +71,16 @@ std::string fileNameOf(std::string name) {
   return name.empty() || name.front() == '.' ? "_" + name : name;
 }
 
+/// Draws into the window's context.
+std::unique_ptr<Rasterizer> createAnyRasterizer(const ViewerOptions& options, const Layers& layers) {
+  auto context = adoptCurrentContext(Window::getProc());
+  if (options.progressive.millions == 0.0) return createRasterizer(options.backend, {}, std::move(context));
+  const std::uint64_t budget = options.streamer.selection.pointBudget;
+  std::uint64_t points = 0;
+  for (const auto& store : layers.stores()) points += store->info().points;
+  return createProgressiveRasterizer(std::move(context), progressiveOptions(options.progressive, budget, points));
+}
+
 class ViewerApp {
  public:
   explicit ViewerApp(const ViewerOptions& options)
@@ -80,7 +91,8 @@ class ViewerApp {
                 options.screenshot.empty()),
         screen_(Window::getProc()),
         profile_(Window::getProc()),
-        rasterizer_(createRasterizer(options.backend, {}, adoptCurrentContext(Window::getProc()))),
+        rasterizer_(createAnyRasterizer(options, layers_)),
+        progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
@@ -128,7 +140,7 @@ class ViewerApp {
       const bool changed = drawOver();
       window_.finishFrame();
       window_.present();
-      idle = input.idle() && !changed && stats_.complete && stats_.draw.nodesNotUploaded == 0 && !control_.gliding() &&
+      idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
              !lookup_.pending() && !profile_.reading() && !window_.panelInUse();
     }
   }
@@ -145,7 +157,7 @@ class ViewerApp {
       drawFrame(input.width, input.height);
       drawOver();
       window_.finishFrame();
-      uploading = stats_.draw.nodesNotUploaded > 0 && stats_.draw.bytesUploaded > 0;
+      uploading = !isFinished(stats_.draw);
     }
     writePng(file, screen_.read(input.width, input.height));
   }
@@ -246,8 +258,9 @@ class ViewerApp {
   bool drawOver() {
     drawClipBoxes(tools_.clip, control_.view());
     drawMeasurements(tools_.measure, control_.view(), tools_.picked);
-    const bool changed = drawPanel(settings_, stats_);
+    bool changed = drawPanel(settings_, stats_);
     if (changed) layers_.setSelection(settings_.selection);
+    if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
     const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);
     if (request.goTo) control_.glideTo(*request.goTo);
@@ -302,6 +315,7 @@ class ViewerApp {
   Screen screen_;
   ProfilePanel profile_;
   std::unique_ptr<Rasterizer> rasterizer_;
+  ProgressiveRasterizer* const progressive_;  ///< rasterizer_, or null where that draws everything in each frame
   CameraControl control_;
   CameraMotion motion_;
   ViewerSettings settings_;

@@ -9,6 +9,7 @@
 #include "render/rasterizer.h"
 #include "viewer/draw_flags.h"
 #include "viewer/drawing.h"
+#include "viewer/progressive_flags.h"
 
 namespace strata {
 
@@ -21,6 +22,7 @@ struct ViewerOptions {
   StreamerOptions streamer;
   std::optional<ColourMode> colour;
   DrawFlags draw;
+  ProgressiveFlags progressive;
   int pointSize = 2;
   bool edl = true;
   bool convert = false;    ///< scans are converted without asking

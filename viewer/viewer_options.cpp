@@ -25,6 +25,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   addDrawFlags(app, options.draw);
+  addProgressiveFlags(app, options.progressive);
   app.add_option("--cache", options.streamer.cacheBytes, "memory for decoded nodes, such as 512M or 2G")
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--no-edl", noEdl, "without eye-dome lighting");
@@ -39,6 +40,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
     throw UsageError(error.what());
   }
   options.backend = parseBackend(backend);
+  checkProgressive(options.progressive, backend, options.draw);
   options.size = parseSize(size);
   options.colour = colourOf(options.draw);
   DrawOptions checked;

@@ -74,6 +74,55 @@ TEST_F(Viewer, DrawsAStoreAndAPanel) {
   EXPECT_GT(std::set<std::uint32_t>(image.pixels.begin(), image.pixels.end()).size(), 1000u);
 }
 
+TEST_F(Viewer, DrawsProgressivelyUntilThePictureIsWhole) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  std::vector<Image> images;
+  for (const std::vector<std::string>& way :
+       {std::vector<std::string>{"--backend", "compute32"}, {"--progressive", "0.05"}}) {
+    const std::string png = file("progressive.png").string();
+    std::vector<std::string> arguments{city().string(), "--size", "640x480", "--screenshot", png};
+    arguments.insert(arguments.end(), way.begin(), way.end());
+    const Finished finished = viewInX(arguments);
+    ASSERT_EQ(finished.exitCode, 0) << finished.err;
+    images.push_back(readPng(png));
+  }
+  std::size_t different = 0;  // the panels lie left and right, the window of progressive drawing below
+  for (int y = 0; y < 100; ++y)
+    for (int x = 360; x < 400; ++x) {
+      const auto at = static_cast<std::size_t>(y) * 640 + static_cast<std::size_t>(x);
+      different += images[0].pixels[at] != images[1].pixels[at];
+    }
+  EXPECT_EQ(different, 0u);
+}
+
+TEST_F(Viewer, StillsAreTheSameDrawnProgressively) {
+  const std::vector<std::string> common{city().string(), "--stills", "--size", "160x90"};
+  for (const auto& [folder, way] : {std::pair<std::string, std::vector<std::string>>{"p1", {"--progressive", "0.02"}},
+                                    {"p2", {"--backend", "compute32"}}}) {
+    std::vector<std::string> all = common;
+    all.insert(all.end(), way.begin(), way.end());
+    all.insert(all.end(), {"-o", file(folder).string()});
+    const Finished run = runProgram("strata-bench", all);
+    if (run.exitCode != 0 && run.err.find("OpenGL") != std::string::npos) GTEST_SKIP() << run.err;
+    ASSERT_EQ(run.exitCode, 0) << run.err;
+  }
+  for (const char* name : {"overview.png", "close.png", "detail.png"})
+    EXPECT_EQ(readWhole(file("p1") / name), readWhole(file("p2") / name)) << name;
+}
+
+TEST_F(Viewer, ProgressiveDrawingRefusesWhatItDoesNotDo) {
+  for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{{"--progressive", "1"},  // and cpu
+                                                                                     {"--pool", "5"},
+                                                                                     {"--progressive", "0"},
+                                                                                     {"--progressive", "many"}}) {
+    std::vector<std::string> all{"--stills"};
+    all.insert(all.end(), wrong.begin(), wrong.end());
+    const Finished run = bench("refused", all);
+    EXPECT_EQ(run.exitCode, 2) << wrong.front();
+    EXPECT_NE(run.err.find("error:"), std::string::npos);
+  }
+}
+
 TEST_F(Viewer, DrawsSeveralStoresAsLayers) {
   if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
   const std::string png = file("two.png").string();
