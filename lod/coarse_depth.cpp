@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace strata {
@@ -15,9 +16,27 @@ constexpr int kRows = 8;
 /// A plane seen from nearer to itself than so many times its thickness is seen edge-on.
 constexpr double kEdgeOn = 2.0;
 /// Sides of a sample that a cell has to span, or too few samples would be closed to be worth the time.
-constexpr double kLeastSamples = 1.0;
+constexpr double kLeastSamples = 4.0;
 /// Share of its depth that a node has to lie behind an occluder: floats round.
 constexpr float kBehind = 1e-5f;
+
+/// Four samples beside each other.
+using Four = float __attribute__((vector_size(16)));
+using FourIndices = std::int32_t __attribute__((vector_size(16)));
+
+/// line[x] = max(line[x], start + step * x) for x in [begin, end), four at a time.
+void raiseSpan(float* line, int begin, int end, float start, float step) {
+  constexpr FourIndices kIndices{0, 1, 2, 3};
+  const Four ramp = Four{0.0f, 1.0f, 2.0f, 3.0f} * step + start;
+  for (int x = begin & ~3; x < end; x += 4) {
+    Four old;
+    std::memcpy(&old, line + x, sizeof old);
+    const Four now = ramp + step * static_cast<float>(x);
+    const FourIndices raised = (now > old) & (kIndices + x >= begin) & (kIndices + x < end);
+    const Four least = raised ? now : old;
+    std::memcpy(line + x, &least, sizeof least);
+  }
+}
 
 }  // namespace
 
@@ -72,26 +91,37 @@ bool CoarseDepth::project(const Occluder& occluder, const glm::dvec3& originFrom
   if (std::abs(along) < kEdgeOn * thickness && !view_.orthographic) return false;
   const double farSide = along + (towards > 0.0 ? thickness : -thickness);
 
-  const double perX = static_cast<double>(kSamples) / view_.width, perY = static_cast<double>(kSamples) / view_.height;
-  double nearest = std::numeric_limits<double>::infinity();
-  glm::vec2 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
-  out.corners = occluder.corners;
+  // Only what is so far away that its gaps are small enough; none of it where they are not anywhere.
+  const double mostPx = occluder.whole ? options_.gapPixels : options_.openGapPixels;
+  const double gapPx = static_cast<double>(occluder.gap) * pixelsPerMetre_;  // at 1 m, or everywhere
+  if (view_.orthographic && gapPx > mostPx) return false;
+  const double from = view_.orthographic ? view_.nearPlane : std::max(view_.nearPlane, gapPx / mostPx);
+
+  std::array<glm::dvec4, Occluder::kMaxCorners> corner;
+  std::array<double, Occluder::kMaxCorners> beyond;
   for (std::size_t i = 0; i < occluder.corners; ++i) {
-    const glm::dvec4 d(originFromEye + glm::dvec3(occluder.corner[i]), 1.0);
-    const double depth = glm::dot(projection_.rowDepth, d);
-    if (depth <= view_.nearPlane) return false;  // cut by the near plane: what is left of it is no loss
-    nearest = std::min(nearest, depth);
+    corner[i] = glm::dvec4(originFromEye + glm::dvec3(occluder.corner[i]), 1.0);
+    beyond[i] = glm::dot(projection_.rowDepth, corner[i]) - from;
+  }
+  const double perX = static_cast<double>(kSamples) / view_.width, perY = static_cast<double>(kSamples) / view_.height;
+  glm::vec2 low(std::numeric_limits<float>::max()), high(-std::numeric_limits<float>::max());
+  out.corners = 0;
+  const auto add = [&](const glm::dvec4& d) {
     const double w = glm::dot(projection_.rowW, d);
-    out.corner[i] = glm::vec2(static_cast<float>(glm::dot(projection_.rowX, d) / w * perX),
-                              static_cast<float>(glm::dot(projection_.rowY, d) / w * perY));
-    low = glm::min(low, out.corner[i]);
-    high = glm::max(high, out.corner[i]);
+    const glm::vec2 at(static_cast<float>(glm::dot(projection_.rowX, d) / w * perX),
+                       static_cast<float>(glm::dot(projection_.rowY, d) / w * perY));
+    low = glm::min(low, at);
+    high = glm::max(high, at);
+    out.corner[out.corners++] = at;
+  };
+  for (std::size_t i = 0; i < occluder.corners; ++i) {
+    const std::size_t next = i + 1 < occluder.corners ? i + 1 : 0;
+    if (beyond[i] > 0.0) add(corner[i]);
+    if ((beyond[i] > 0.0) != (beyond[next] > 0.0))
+      add(glm::mix(corner[i], corner[next], beyond[i] / (beyond[i] - beyond[next])));
   }
   const auto side = static_cast<float>(kSamples);
-  if (high.x < 0.0f || high.y < 0.0f || low.x > side || low.y > side) return false;
-  const double gapPx = static_cast<double>(occluder.gap) * pixelsPerMetre_ / (view_.orthographic ? 1.0 : nearest);
-  if (gapPx > (occluder.whole ? options_.gapPixels : options_.openGapPixels)) return false;
-
+  if (out.corners < 3 || high.x < 0.0f || high.y < 0.0f || low.x > side || low.y > side) return false;
   return linearNearness(normal, farSide, 1.0 / perX, 1.0 / perY, out.nearness);
 }
 
@@ -130,14 +160,13 @@ void CoarseDepth::fill(const Polygon& polygon) {
   firstRow_ = std::min(firstRow_, first);
   lastRow_ = std::max(lastRow_, last);
 
-  constexpr float kFar = 1e9f;
   for (int row = first; row <= last; row += kRows) {
     float from[kRows], to[kRows];
     std::fill(from, from + kRows, 0.0f);
     std::fill(to, to + kRows, static_cast<float>(kSamples));
     for (std::size_t i = 0; i < polygon.corners; ++i) {
       // Inside: (b - a) x (p - a) >= 0, for a polygon that runs clockwise on the screen.
-      glm::vec2 a = polygon.corner[i], b = polygon.corner[(i + 1) % polygon.corners];
+      glm::vec2 a = polygon.corner[i], b = polygon.corner[i + 1 < polygon.corners ? i + 1 : 0];
       if (twiceArea < 0.0f) std::swap(a, b);
       const glm::vec2 d = b - a;
       if (std::abs(d.y) < 1e-6f) continue;  // rows beyond a level edge are not visited
@@ -149,14 +178,15 @@ void CoarseDepth::fill(const Polygon& polygon) {
         for (int r = 0; r < kRows; ++r) from[r] = std::max(from[r], start + slope * static_cast<float>(r));
       }
     }
-    for (int r = 0; r < kRows && row + r <= last; ++r) {
-      const int begin = static_cast<int>(std::ceil(std::clamp(from[r], -kFar, kFar) - 0.5f));
-      const int end = static_cast<int>(std::floor(std::clamp(to[r], -kFar, kFar) - 0.5f)) + 1;
-      const float start = polygon.nearness.at(0.5f, static_cast<float>(row + r) + 0.5f);
-      Nearness* const line = samples_.data() + static_cast<std::size_t>(row + r) * kSamples;
-      for (int x = std::max(begin, 0); x < std::min(end, kSamples); ++x)
-        line[x] = std::max(line[x], start + polygon.nearness.b * static_cast<float>(x));
+    // The first sample whose middle is not before `from`, and the first that is beyond `to`.
+    int begin[kRows], end[kRows];
+    for (int r = 0; r < kRows; ++r) {
+      begin[r] = static_cast<int>(std::min(from[r], static_cast<float>(kSamples)) + 0.5f);
+      end[r] = static_cast<int>(std::max(to[r], 0.0f) + 0.5f);
     }
+    for (int r = 0; r < kRows && row + r <= last; ++r)
+      raiseSpan(samples_.data() + static_cast<std::size_t>(row + r) * kSamples, begin[r], end[r],
+                polygon.nearness.at(0.5f, static_cast<float>(row + r) + 0.5f), polygon.nearness.b);
   }
 }
 

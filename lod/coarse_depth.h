@@ -16,7 +16,7 @@ struct OcclusionOptions {
   bool enabled = true;
   double gapPixels = 256.0;            ///< of a surface that is loaded to its last point
   double openGapPixels = 64.0;         ///< of one of which finer points are still to come: they may show a hole in it
-  std::uint32_t mostOccluders = 6000;  ///< rasterized for one view, largest first
+  std::uint32_t mostOccluders = 4000;  ///< rasterized for one view, largest first
 
   /// Surfaces hide only what they leave no pixel of.
   static OcclusionOptions exact() { return {.gapPixels = 1.0, .openGapPixels = 1.0}; }
@@ -65,7 +65,7 @@ class CoarseDepth {
   };
   /// A convex polygon on the sample grid.
   struct Polygon {
-    std::array<glm::vec2, Occluder::kMaxCorners> corner;
+    std::array<glm::vec2, Occluder::kMaxCorners + 1> corner;
     std::size_t corners = 0;
     Linear nearness;
   };

@@ -39,9 +39,8 @@ std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
   const std::uint64_t points = record.pointCount;
   // Batches may be shorter than they could be; twice as many are allowed for, and a few for vectors that grow.
   const std::uint64_t batches = 8 + 2 * ((points + Batch::kMaxPoints - 1) / Batch::kMaxPoints);
-  const std::uint64_t occluders =
-      std::min<std::uint64_t>(OccluderSet::kMost, points / OccluderSet::kLeastPoints * OccluderSet::kMostACell);
-  return sizeof(StreamedNode) + batches * sizeof(Batch) + points * bytesAPoint(info) + occluders * sizeof(Occluder);
+  return sizeof(StreamedNode) + batches * sizeof(Batch) + points * bytesAPoint(info) +
+         OccluderSet::mostOf(points) * sizeof(Occluder);
 }
 
 std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_token stop) {

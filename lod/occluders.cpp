@@ -1,36 +1,22 @@
 #include "lod/occluders.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 #include <span>
 
-#include <glm/gtc/type_precision.hpp>
+#include "lod/cell_plane.h"
 
 namespace strata {
 namespace {
 
 constexpr int kCells = OccluderSet::kCells;
 constexpr std::size_t kCellCount = std::size_t{kCells} * kCells * kCells;
-constexpr int kGrid = OccluderSet::kFinestGrid;
-constexpr float kLayer = 0.04f;      // half the thickness of a layer, in cells: 1 cm where a cell has 25
-constexpr float kLeastArea = 0.05f;  // of an occluder, in sides of a cell squared: slivers are not worth their time
-
-/// A plane in a cell, seen along its steepest axis as a height over the other two. Coordinates from the cell's
-/// centre in sides of the cell.
-struct CellPlane {
-  glm::vec3 normal{0.0f};
-  float offset = 0.0f;
-  std::size_t u = 0, v = 1, w = 2;             ///< w is the axis that the normal is nearest to
-  std::array<std::uint16_t, kGrid> squares{};  ///< rows of v, bits of u: points near the plane
-
-  float height(float atU, float atV) const {
-    return (offset - normal[static_cast<glm::length_t>(u)] * atU - normal[static_cast<glm::length_t>(v)] * atV) /
-           normal[static_cast<glm::length_t>(w)];
-  }
-};
+constexpr float kLayer = 0.04f;         // half the thickness of a layer, in cells: 1 cm where a cell has 25
+constexpr int kLeastPart = 8;           // share of a cell's squares that a part of it has to have: an eighth
+constexpr std::size_t kMostSpread = 3;  // occluders of a cell that leave room for planes of the cells beside it
+constexpr std::size_t kMostParts = 2;   // of a plane in a cell
+constexpr float kLeastArea = 0.05f;     // of an occluder, in sides of a cell squared: slivers are not worth their time
 
 /// The node's points sorted by cell, each as its place in the cell in 1/1024 of the cell's side.
 class PointsByCell {
@@ -80,107 +66,16 @@ class PointsByCell {
   std::vector<glm::u16vec3> points_;
 };
 
-/// To coordinates from the cell's centre in sides of the cell.
-glm::vec3 placeInCell(const glm::u16vec3& point) { return (glm::vec3(point) + 0.5f) / 1024.0f - 0.5f; }
-
-/// Eigenvector of the smallest eigenvalue of a symmetric matrix (xx yy zz xy xz yz); zero where it is not unique.
-/// Eigenvalues in closed form (Smith 1961); the vector is the longest cross product of two rows of A - λ.
-glm::vec3 smallestAxis(const std::array<double, 6>& a) {
-  const double mean = (a[0] + a[1] + a[2]) / 3.0;
-  const double off = a[3] * a[3] + a[4] * a[4] + a[5] * a[5];
-  const double p2 = (a[0] - mean) * (a[0] - mean) + (a[1] - mean) * (a[1] - mean) + (a[2] - mean) * (a[2] - mean);
-  const double p = std::sqrt((p2 + 2.0 * off) / 6.0);
-  if (!(p > 0.0)) return glm::vec3(0.0f);
-  const double b0 = (a[0] - mean) / p, b1 = (a[1] - mean) / p, b2 = (a[2] - mean) / p;
-  const double b3 = a[3] / p, b4 = a[4] / p, b5 = a[5] / p;
-  const double halfDet = 0.5 * (b0 * (b1 * b2 - b5 * b5) - b3 * (b3 * b2 - b5 * b4) + b4 * (b3 * b5 - b1 * b4));
-  const double angle = std::acos(std::clamp(halfDet, -1.0, 1.0)) / 3.0;
-  const double smallest = mean + 2.0 * p * std::cos(angle + 2.0 * std::numbers::pi / 3.0);
-  const glm::dvec3 rows[3] = {
-      {a[0] - smallest, a[3], a[4]}, {a[3], a[1] - smallest, a[5]}, {a[4], a[5], a[2] - smallest}};
-  glm::dvec3 best(0.0);
-  for (int i = 0; i < 3; ++i) {
-    const glm::dvec3 c = glm::cross(rows[i], rows[(i + 1) % 3]);
-    if (glm::dot(c, c) > glm::dot(best, best)) best = c;
-  }
-  const double length = glm::length(best);
-  return length > 1e-12 ? glm::vec3(best / length) : glm::vec3(0.0f);
-}
-
-void setNormal(const glm::vec3& normal, CellPlane& plane) {
-  plane.normal = normal;
-  const glm::vec3 steep = glm::abs(normal);
-  plane.w = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
-  plane.u = (plane.w + 1) % 3;
-  plane.v = (plane.w + 2) % 3;
-}
-
-/// The plane through the points' mean across their smallest principal axis. False where there is none.
-bool fitPlane(std::span<const glm::u16vec3> points, CellPlane& plane) {
-  std::int64_t sum[3] = {}, product[6] = {};
-  for (const glm::u16vec3& p : points) {
-    const std::int32_t x = p.x, y = p.y, z = p.z;
-    sum[0] += x, sum[1] += y, sum[2] += z;
-    product[0] += x * x, product[1] += y * y, product[2] += z * z;
-    product[3] += x * y, product[4] += x * z, product[5] += y * z;
-  }
-  const auto n = static_cast<double>(points.size());
-  const glm::dvec3 mean =
-      glm::dvec3(static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])) / n;
-  const auto spread = [&](int k, glm::length_t i, glm::length_t j) {
-    return static_cast<double>(product[k]) / n - mean[i] * mean[j];
-  };
-  setNormal(smallestAxis(
-                {spread(0, 0, 0), spread(1, 1, 1), spread(2, 2, 2), spread(3, 0, 1), spread(4, 0, 2), spread(5, 1, 2)}),
-            plane);
-  plane.offset = glm::dot(plane.normal, (glm::vec3(mean) + 0.5f) / 1024.0f - 0.5f);
-  return std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]) > 0.5f;
-}
-
-/// Notes in which squares there are points within `layer` of the plane.
-void markSquares(std::span<const glm::u16vec3> points, float layer, CellPlane& plane) {
-  const auto u = static_cast<glm::length_t>(plane.u), v = static_cast<glm::length_t>(plane.v);
-  plane.squares.fill(0);
-  constexpr int kShift = std::countr_zero(1024u / kGrid);
-  for (const glm::u16vec3& point : points) {
-    const bool near = std::abs(glm::dot(plane.normal, placeInCell(point)) - plane.offset) <= layer;
-    std::uint16_t& row = plane.squares[point[v] >> kShift];
-    row = static_cast<std::uint16_t>(row | static_cast<std::uint32_t>(near) << (point[u] >> kShift));
-  }
-}
-
-/// Whether each square of a grid of `side` x `side` holds a point, or need not: the plane leaves the cell there.
-bool isClosed(const CellPlane& plane, int side) {
-  const int each = kGrid / side;
-  const float size = 1.0f / static_cast<float>(side);
-  const float slope = (std::abs(plane.normal[static_cast<glm::length_t>(plane.u)]) +
-                       std::abs(plane.normal[static_cast<glm::length_t>(plane.v)])) /
-                      std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]);
-  const float inside = 0.5f - 0.5f * size * slope;
-  int needed = 0;
-  for (int row = 0; row < side; ++row) {
-    std::uint32_t points = 0;
-    for (int i = 0; i < each; ++i) points |= plane.squares[static_cast<std::size_t>(row * each + i)];
-    for (int column = 0; column < side; ++column) {
-      const float height = plane.height((static_cast<float>(column) + 0.5f) * size - 0.5f,
-                                        (static_cast<float>(row) + 0.5f) * size - 0.5f);
-      if (std::abs(height) > inside) continue;
-      ++needed;
-      if ((points >> (column * each) & ((1u << each) - 1)) == 0) return false;
-    }
-  }
-  return needed > 0;
-}
-
-/// The part of the plane inside the cell: the cell's square lifted to the plane, clipped at the cell's top and bottom.
-/// Coordinates as in CellPlane.
-void clipToCell(const CellPlane& plane, Occluder& out) {
+/// The part of the plane inside the cell: a part of the cell's square lifted to the plane, clipped at the cell's top
+/// and bottom. Coordinates as in CellPlane.
+void clipToCell(const CellPlane& plane, const SquareRectangle& part, int grid, Occluder& out) {
   std::array<glm::vec3, 8> polygon, clipped;
   std::size_t count = 4;
   const auto w = static_cast<glm::length_t>(plane.w);
   for (std::size_t i = 0; i < 4; ++i) {
-    const float atU = i == 1 || i == 2 ? 0.5f : -0.5f;
-    const float atV = i >= 2 ? 0.5f : -0.5f;
+    const int column = i == 1 || i == 2 ? part.right : part.left, row = i >= 2 ? part.bottom : part.top;
+    const float atU = static_cast<float>(column) / static_cast<float>(grid) - 0.5f;
+    const float atV = static_cast<float>(row) / static_cast<float>(grid) - 0.5f;
     polygon[i][static_cast<glm::length_t>(plane.u)] = atU;
     polygon[i][static_cast<glm::length_t>(plane.v)] = atV;
     polygon[i][w] = plane.height(atU, atV);
@@ -215,6 +110,10 @@ int cellsFor(std::uint32_t points) {
   return cells;
 }
 
+std::size_t cellIndex(const glm::ivec3& cell) {
+  return static_cast<std::size_t>((cell.x * kCells + cell.y) * kCells + cell.z);
+}
+
 glm::ivec3 cellAt(std::size_t cell) {
   return {static_cast<int>(cell / (kCells * kCells)), static_cast<int>(cell / kCells % kCells),
           static_cast<int>(cell % kCells)};
@@ -230,28 +129,18 @@ class Finder {
     std::size_t cell = 0;
     CellPlane plane;
     int grid = 0;
+    SquareRectangle part;    ///< of the grid; beyond it where cells beside it were joined
+    std::uint32_t seed = 0;  ///< the first in found_ that has this very plane
   };
 
   std::vector<Found> find() {
     for (std::size_t cell = 0; cell < kCellCount; ++cell) {
       CellPlane plane;
-      if (points_.of(cell).size() >= OccluderSet::kLeastPoints && fitPlane(points_.of(cell), plane))
-        tryPlane(cell, plane);
-    }
-    // Where a wall meets the floor or has something before it, the points of a cell lie in no one plane; that of the
-    // cell beside it is then tried. What is found goes on to the next cell.
-    for (std::size_t i = 0; i < found_.size() && found_.size() < OccluderSet::kMost; ++i) {
-      const std::size_t cell = found_[i].cell;
-      for (int axis = 0; axis < 3; ++axis)
-        for (const int side : {-1, 1}) {
-          glm::ivec3 beside = cellAt(cell);
-          beside[axis] += side;
-          if (beside[axis] < 0 || beside[axis] >= cellsAlong_) continue;
-          CellPlane plane = found_[i].plane;
-          plane.offset -= plane.normal[axis] * static_cast<float>(side);
-          const auto to = static_cast<std::size_t>((beside.x * kCells + beside.y) * kCells + beside.z);
-          if (crosses(plane) && !isKnown(to, plane)) tryPlane(to, plane);
-        }
+      if (isCovered(cell) || points_.of(cell).size() < OccluderSet::kLeastPoints || !fitPlane(points_.of(cell), plane))
+        continue;
+      const std::size_t first = found_.size();
+      tryPlane(cell, plane, static_cast<std::uint32_t>(first));
+      spread(first);
     }
     return std::move(found_);
   }
@@ -262,11 +151,35 @@ class Finder {
     return std::abs(plane.offset) < 0.5f * (steep.x + steep.y + steep.z);
   }
 
+  /// Where a wall meets the floor or has something before it, the points of a cell lie in no one plane; that of the
+  /// cell beside it is tried then. What is found goes on to the next cell, so that a wall has one plane in all of them.
+  void spread(std::size_t first) {
+    for (std::size_t i = first; i < found_.size() && found_.size() < OccluderSet::kMost; ++i) {
+      const glm::ivec3 cell = cellAt(found_[i].cell);
+      for (glm::length_t axis = 0; axis < 3; ++axis)
+        for (const int side : {-1, 1}) {
+          glm::ivec3 beside = cell;
+          beside[axis] += side;
+          if (beside[axis] < 0 || beside[axis] >= cellsAlong_) continue;
+          CellPlane plane = found_[i].plane;
+          plane.offset -= plane.normal[axis] * static_cast<float>(side);
+          if (crosses(plane) && !isKnown(cellIndex(beside), plane)) tryPlane(cellIndex(beside), plane, found_[i].seed);
+        }
+    }
+  }
+
+  /// True when the cell has a plane that is closed all over it: there is no need to look for its own.
+  bool isCovered(std::size_t cell) const {
+    for (std::uint32_t at = first_[cell]; at != 0; at = next_[at - 1])
+      if (found_[at - 1].part.area() == found_[at - 1].grid * found_[at - 1].grid) return true;
+    return false;
+  }
+
   /// True when the cell has a plane so like this one that a second would tell nothing new, or enough of them.
   bool isKnown(std::size_t cell, const CellPlane& plane) const {
     std::size_t known = 0;
     for (std::uint32_t at = first_[cell]; at != 0; at = next_[at - 1]) {
-      if (++known == OccluderSet::kMostACell) return true;
+      if (++known == kMostSpread) return true;
       const CellPlane& other = found_[at - 1].plane;
       if (std::abs(glm::dot(other.normal, plane.normal)) > 0.95f &&
           std::abs(std::abs(other.offset) - std::abs(plane.offset)) < 4.0f * layer_)
@@ -275,16 +188,44 @@ class Finder {
     return false;
   }
 
-  void tryPlane(std::size_t cell, CellPlane& plane) {
+  void tryPlane(std::size_t cell, CellPlane& plane, std::uint32_t seed) {
     const std::span<const glm::u16vec3> points = points_.of(cell);
     if (points.size() < OccluderSet::kLeastPoints || found_.size() >= OccluderSet::kMost) return;
     markSquares(points, layer_, plane);
-    int grid = kGrid;
-    while (grid >= OccluderSet::kCoarsestGrid && !isClosed(plane, grid)) grid /= 2;
-    if (grid < OccluderSet::kCoarsestGrid) return;
-    found_.push_back({cell, plane, grid});
-    next_.push_back(first_[cell]);
-    first_[cell] = static_cast<std::uint32_t>(found_.size());
+    std::array<ClosedSquares, 3> grids;
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      const int grid = kCellGrid >> i;
+      grids[i] = ClosedSquares(plane, grid);
+      if (grids[i].all()) return add({cell, plane, grid, {0, grid, 0, grid}, seed});
+    }
+    for (const ClosedSquares& squares : grids)
+      if (addParts(cell, plane, squares, seed)) return;
+  }
+
+  /// Where a door, a window or something that stands before a wall leaves the cell open, the largest rectangles that
+  /// are not. False where they are too small to be worth their time.
+  bool addParts(std::size_t cell, const CellPlane& plane, const ClosedSquares& squares, std::uint32_t seed) {
+    const int least = squares.side * squares.side / kLeastPart;
+    if (squares.held < least) return false;
+    SquareRows inner = squares.inner();
+    std::size_t parts = 0;
+    for (; parts < kMostParts && found_.size() < OccluderSet::kMost; ++parts) {
+      const SquareRectangle part = largestRectangle(inner, squares.side, least);
+      if (part.area() == 0) break;
+      add({cell, plane, squares.side, part, seed});
+      const std::uint32_t columns = (1u << part.right) - (1u << part.left);
+      for (int row = part.top; row < part.bottom; ++row) {
+        std::uint16_t& bits = inner[static_cast<std::size_t>(row)];
+        bits = static_cast<std::uint16_t>(bits & ~columns);
+      }
+    }
+    return parts > 0;
+  }
+
+  void add(const Found& found) {
+    found_.push_back(found);
+    next_.push_back(first_[found.cell]);
+    first_[found.cell] = static_cast<std::uint32_t>(found_.size());
   }
 
   const PointsByCell points_;
@@ -295,6 +236,69 @@ class Finder {
   std::array<std::uint32_t, kCellCount> first_{};
   std::vector<std::uint32_t> next_;
 };
+
+/// The octant of the node's cube that a cell is in.
+int octantOf(const glm::ivec3& cell, int cellsAlong) {
+  const int half = cellsAlong / 2;
+  return (cell.x >= half ? 4 : 0) + (cell.y >= half ? 2 : 0) + (cell.z >= half ? 1 : 0);
+}
+
+/// Joins whole cells that lie side by side in one plane into rectangles, in place. A surface of 8 x 8 cells becomes one
+/// occluder, where all of it is as closed and goes on below as one.
+void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t childMask) {
+  std::array<std::vector<std::uint32_t>, kCellCount> byCell;
+  for (std::size_t i = 0; i < found.size(); ++i) byCell[found[i].cell].push_back(static_cast<std::uint32_t>(i));
+  std::vector<bool> joined(found.size(), false);
+  const auto open = [&](const glm::ivec3& cell) { return (childMask >> octantOf(cell, cellsAlong) & 1) != 0; };
+  const auto isWhole = [](const Finder::Found& f) { return f.part.area() == f.grid * f.grid; };
+  std::vector<std::uint32_t> taken;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    Finder::Found& first = found[i];
+    if (joined[i] || !isWhole(first)) continue;
+    const glm::ivec3 at = cellAt(first.cell);
+    const auto u = static_cast<glm::length_t>(first.plane.u), v = static_cast<glm::length_t>(first.plane.v);
+    /// The other that continues this one so many cells along u and v; found.size() if there is none.
+    const auto other = [&](int alongU, int alongV) {
+      glm::ivec3 cell = at;
+      cell[u] += alongU;
+      cell[v] += alongV;
+      const float height = first.plane.height(static_cast<float>(alongU), static_cast<float>(alongV));
+      const float slope = std::abs(first.plane.height(0.5f, 0.0f) - first.plane.height(0.0f, 0.0f)) +
+                          std::abs(first.plane.height(0.0f, 0.5f) - first.plane.height(0.0f, 0.0f));
+      if (cell[u] >= cellsAlong || cell[v] >= cellsAlong || cell[v] < 0 || std::abs(height) + slope > 0.5f)
+        return found.size();
+      for (const std::uint32_t k : byCell[cellIndex(cell)])
+        if (!joined[k] && found[k].seed == first.seed && isWhole(found[k]) && open(cell) == open(at))
+          return static_cast<std::size_t>(k);
+      return found.size();
+    };
+    if (other(0, 0) == found.size()) continue;
+    int width = 1, height = 1, grid = first.grid;
+    while (other(width, 0) < found.size()) grid = std::min(grid, found[other(width++, 0)].grid);
+    for (bool whole = true; whole;) {
+      taken.clear();
+      for (int k = 0; k < width && whole; ++k) {
+        const std::size_t next = other(k, height);
+        whole = next < found.size();
+        if (whole) taken.push_back(static_cast<std::uint32_t>(next));
+      }
+      if (!whole) break;
+      for (const std::uint32_t k : taken) {
+        joined[k] = true;
+        grid = std::min(grid, found[k].grid);
+      }
+      ++height;
+    }
+    for (int k = 1; k < width; ++k) joined[other(k, 0)] = true;
+    first.grid = grid;
+    first.part = {0, width * grid, 0, height * grid};
+    joined[i] = false;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < found.size(); ++i)
+    if (!joined[i]) found[kept++] = found[i];
+  found.resize(kept);
+}
 
 }  // namespace
 
@@ -311,12 +315,15 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
       if (batch.bits[axis] > 10) coarseness = std::max(coarseness, batch.boxSize[axis] / 2048.0 / side);
   const float layer = kLayer + static_cast<float>(coarseness);
   const auto metres = static_cast<float>(side);
-  const std::vector<Finder::Found> all = Finder(node, cube, cellsAlong, layer).find();
-  out.occluders.reserve(all.size());
+  std::vector<Finder::Found> all = Finder(node, cube, cellsAlong, layer).find();
+  joinCells(all, cellsAlong, childMask);
+  const std::size_t most = OccluderSet::mostOf(node.pointCount());
+  out.occluders.reserve(std::min(all.size(), most));
   for (const Finder::Found& found : all) {
+    if (out.occluders.size() == most) break;
     const CellPlane& plane = found.plane;
     Occluder occluder;
-    clipToCell(plane, occluder);
+    clipToCell(plane, found.part, found.grid, occluder);
     if (occluder.corners < 3 || areaOf(occluder) < kLeastArea) continue;
     const glm::ivec3 at = cellAt(found.cell);
     const glm::vec3 centre = glm::vec3(at) + 0.5f - 0.5f * static_cast<float>(cellsAlong);
@@ -326,9 +333,7 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
     const float square = metres / static_cast<float>(found.grid);
     occluder.gap = square / std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]);
     occluder.back = layer * metres + 0.5f * occluder.gap;
-    const int half = cellsAlong / 2;
-    const int octant = (at.x >= half ? 4 : 0) + (at.y >= half ? 2 : 0) + (at.z >= half ? 1 : 0);
-    occluder.whole = (childMask >> octant & 1) == 0;
+    occluder.whole = (childMask >> octantOf(at, cellsAlong) & 1) == 0;
     out.occluders.push_back(occluder);
   }
 }

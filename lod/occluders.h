@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -30,7 +31,8 @@ struct OccluderSet {
   static constexpr int kCoarsestGrid = 4;
   static constexpr std::uint32_t kLeastPoints = 16;  ///< of a cell that is looked at; no occluder has fewer
   static constexpr std::size_t kMost = 512;          ///< occluders of a node
-  static constexpr std::size_t kMostACell = 3;
+  /// Occluders of a node with so many points; what is found beyond is left out.
+  static std::size_t mostOf(std::uint64_t points) { return std::min<std::uint64_t>(kMost, points / 32); }
 
   glm::dvec3 origin{0.0};  ///< world: the middle of the node's cube
   double cellSide = 0.0;   ///< metres

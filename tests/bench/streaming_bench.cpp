@@ -1,6 +1,9 @@
 // What streaming costs and saves, as tables of docs/benchmarks.md (Table 3 of Kanzok 2015: strata-bench --suite
 // kanzok):
 //
+// streaming_bench indoors STORE [VIEWS]    with and without occlusion: random views from inside a store of
+// synthetic:room
+//
 // streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken
 //
 // streaming_bench ahead STORE PATH.json    the same flight with and without looking ahead, from a slow disk
@@ -16,16 +19,20 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <functional>
+#include <random>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "core/error.h"
 #include "io/store_files.h"
+#include "io/synthetic_city.h"
+#include "io/synthetic_scanner.h"
 #include "lod/streamer.h"
 #include "viewer/camera_path.h"
 #include "viewer/drawing.h"
@@ -127,6 +134,91 @@ Flight fly(std::shared_ptr<const Store> store, const CameraPath& path, const Str
   flight.lastDetailMs = msSince(start);
   flight.stats = streamer.stats();
   return flight;
+}
+
+// --- occlusion
+
+struct Complete {
+  double ms = 0.0, frameMs = 0.0;
+  std::size_t nodes = 0;
+  std::uint64_t points = 0;
+  StreamerStats stats;
+};
+
+Complete complete(const std::string& storePath, const View& view, bool occlusion) {
+  const auto store = openWith(storePath, {});
+  StreamerOptions options;
+  options.selection.occlusion.enabled = occlusion;
+  options.cacheBytes = std::uint64_t{4} << 30;
+  options.selection.pointBudget = SelectionOptions::kMaxPointBudget;
+  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(Backend::cpu);
+  const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
+  Streamer streamer(store, options);
+  Complete result;
+  const auto start = Clock::now();
+  streamer.setView(view);
+  streamer.waitUntilComplete(300s);
+  result.ms = msSince(start);
+  const RenderList& list = streamer.beginFrame();
+  result.nodes = list.items.size();
+  result.points = list.pointCount;
+  std::vector<double> times;
+  Frame frame;
+  for (int i = 0; i < 7; ++i) {
+    const auto began = Clock::now();
+    rasterizer->draw(list, view, draw, frame);
+    times.push_back(msSince(began));
+  }
+  result.frameMs = percentile(times, 50.0);
+  result.stats = streamer.stats();
+  return result;
+}
+
+/// Views of people who stand somewhere in the rooms or the corridor and look about.
+void indoors(const std::string& storePath, int views) {
+  const Store store(storePath);
+  const Box bounds = store.info().bounds;
+  const std::unique_ptr<ScannerScan> scan = makeRoom(store.info().points, 1);
+  const glm::dvec3 origin = scan->frame().origin;
+  std::mt19937_64 engine(5);
+  const auto random = [&engine](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  };
+  Complete sum[2];
+  int halved = 0;
+  for (int i = 0; i < views; ++i) {
+    View view;
+    do {
+      view.eye = {random(bounds.min.x, bounds.max.x), random(bounds.min.y, bounds.max.y), origin.z + random(1.2, 1.9)};
+    } while (!scan->scene().isFree(glm::vec3(view.eye - origin), 0.3f));
+    const double around = random(0.0, 6.2831853);
+    view.target = view.eye + glm::dvec3(std::cos(around), std::sin(around), random(-0.4, 0.2));
+    view.width = kPicture.width;
+    view.height = kPicture.height;
+    std::uint64_t loaded[2];
+    for (const bool on : {false, true}) {
+      const Complete c = complete(storePath, view, on);
+      loaded[on] = c.stats.nodesLoaded;
+      Complete& all = sum[on];
+      all.stats.nodesLoaded += c.stats.nodesLoaded;
+      all.stats.bytesRead += c.stats.bytesRead;
+      all.nodes += c.nodes;
+      all.points += c.points;
+      all.frameMs += c.frameMs / views;
+      all.stats.lodMsMean += c.stats.lodMsMean / views;
+    }
+    halved += 2 * loaded[1] <= loaded[0] ? 1 : 0;
+  }
+  std::printf("| %d views | nodes drawn | points | frame ms | nodes loaded | MB read | LOD ms |\n", views);
+  std::printf("|---|---|---|---|---|---|---|\n");
+  for (const bool on : {true, false})
+    std::printf("| %s | %zu | %.1f M | %.1f | %llu | %.0f | %.2f |\n", on ? "with" : "without", sum[on].nodes,
+                1e-6 * static_cast<double>(sum[on].points), sum[on].frameMs,
+                static_cast<unsigned long long>(sum[on].stats.nodesLoaded),
+                1e-6 * static_cast<double>(sum[on].stats.bytesRead), sum[on].stats.lodMsMean);
+  std::printf("\n%.1f %% of the nodes loaded; at most half of them in %d of %d views\n",
+              100.0 * static_cast<double>(sum[1].stats.nodesLoaded) / static_cast<double>(sum[0].stats.nodesLoaded),
+              halved, views);
 }
 
 // --- flights
@@ -275,6 +367,8 @@ int run(const std::vector<std::string>& arguments) {
   const std::string what = arguments.empty() ? "" : arguments[0];
   if (what == "open") {
     openLarge(arguments.size() > 1 ? std::stoull(arguments[1]) : 2'000'000);
+  } else if (what == "indoors" && arguments.size() >= 2) {
+    indoors(arguments[1], arguments.size() > 2 ? std::stoi(arguments[2]) : 60);
   } else if (what == "loaders" && arguments.size() == 2) {
     loaders(arguments[1]);
   } else if (arguments.size() == 3) {
