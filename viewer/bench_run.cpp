@@ -228,8 +228,9 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
                    stage("upload", report.frames, &FrameRecord::uploadMs, true),
                    stage("drawing", report.frames, &FrameRecord::drawMs, true),
                    stage("resolve to colour", report.frames, &FrameRecord::resolveMs, true),
-                   stage("of drawing, by the GPU's clock", report.frames, &FrameRecord::gpuMs, false),
-                   stage("LOD pass", report.frames, &FrameRecord::lodMs, false)};
+                   stage("LOD pass, on its own thread", report.frames, &FrameRecord::lodMs, false)};
+  if (report.measures.gpuMs > 0.0)
+    report.stages.push_back(stage("of drawing, by the GPU's clock", report.frames, &FrameRecord::gpuMs, false));
 }
 
 /// A still of full detail. Where the scan is too sparse for a place so near, the camera steps back, at most to

@@ -30,12 +30,12 @@ border:1px solid var(--rule);border-radius:6px;overflow:hidden;margin:1.75rem 0 
 .figures div{padding:.8rem 1rem;box-shadow:0 0 0 1px var(--rule)}
 .figures b{display:block;font-size:1.35rem;font-weight:600;font-variant-numeric:tabular-nums;white-space:nowrap}
 .figures span{font-size:.82rem;color:var(--soft)}
-.plot{margin:0 0 2rem}.plot figcaption{font-size:.9rem;margin:0 0 .9rem}
-.chart{position:relative;height:13rem;margin:0 .4rem 1.9rem 4.6rem}
+figure.plot{margin:0 0 1.5rem;padding-bottom:1.9rem}.plot figcaption{font-size:.9rem;margin:0 0 .9rem}
+.chart{position:relative;height:13rem;margin:0 .4rem 0 4.6rem}
 .chart svg{position:absolute;inset:0;width:100%;height:100%;overflow:visible}
 .chart span{position:absolute;font-size:.75rem;color:var(--soft);white-space:nowrap;font-variant-numeric:tabular-nums}
 .chart .y{right:100%;margin-right:.6rem;transform:translateY(-50%)}
-.chart .x{top:100%;margin-top:.4rem;transform:translateX(-50%)}
+.chart .x{top:100%;margin-top:.4rem;transform:translateX(-50%)}.chart .x:last-child{transform:translateX(-100%)}
 svg *{vector-effect:non-scaling-stroke}.grid{stroke:var(--rule);stroke-width:1}
 .line{fill:none;stroke-width:1.6;stroke-linejoin:round}.line.a{stroke:var(--a)}.line.b{stroke:var(--b)}
 .line.muted{stroke:var(--soft);stroke-dasharray:4 4;stroke-width:1}
@@ -44,7 +44,9 @@ svg *{vector-effect:non-scaling-stroke}.grid{stroke:var(--rule);stroke-width:1}
 border-top:2px solid;margin-right:.4em;vertical-align:middle}.key.a:before{color:var(--a)}.key.b:before{color:var(--b)}
 .key.muted:before{border-top-style:dashed;border-top-width:1px}
 .stages{display:flex;height:1.1rem;border-radius:4px;overflow:hidden;background:var(--rule);margin:0 0 1rem}
-.stages i{background:var(--a)}.stages i:nth-child(2n){background:var(--b)}.stages i:nth-child(3n){opacity:.55}
+.stages i.k0,i.swatch.k0{background:var(--soft)}.stages i.k1,i.swatch.k1{background:var(--warn)}
+.stages i.k2,i.swatch.k2{background:var(--a)}.stages i.k3,i.swatch.k3{background:var(--b)}
+i.swatch{display:inline-block;width:.7em;height:.7em;border-radius:2px;margin-right:.5em}
 table{border-collapse:collapse;width:100%;font-size:.92rem}
 td,th{padding:.38rem .5rem .38rem 0;border-bottom:1px solid var(--rule);text-align:left;vertical-align:top;
 font-weight:400;overflow-wrap:anywhere}th{color:var(--soft);width:38%}td.n,th.n{text-align:right;width:auto;
@@ -53,7 +55,7 @@ font-variant-numeric:tabular-nums;white-space:nowrap}
 footer{margin-top:3rem;font-size:.82rem;color:var(--soft)}
 @media(max-width:32rem){main{padding:1.5rem 1rem 3rem}h1{font-size:1.5rem}.chart{height:10rem;margin-left:4.1rem}
 .chart .x:nth-of-type(2n+7){display:none}}
-@media print{main{max-width:none;padding:0}h2{break-after:avoid}figure,tr{break-inside:avoid}body{font-size:10.5pt}}
+@media print{main{max-width:none;padding:0}h2{break-after:avoid}figure,tr,.figures,.stages{break-inside:avoid}body{font-size:10.5pt}}
 )css";
 
 /// Each pixel the mean of the ones it stands for.
@@ -125,6 +127,7 @@ std::string keyFigures(const BenchMeasures& m) {
   add(std::to_string(m.hitches), "hitches (over 60 ms and 1.5 × the frame before)");
   add(readableCount(m.pointsPerPixelWon), "points drawn for a pixel won");
   add(readableBytes(static_cast<double>(m.peakRssBytes)), "memory, peak");
+  add(readableCount(m.spacingP95) + " px", "between points where widest, 95th percentile");
   return html + "</div>\n";
 }
 
@@ -183,13 +186,20 @@ std::string plotsHtml(const BenchReport& report) {
               readablePercent};
   detail.top = 100.0;
   detail.lines.push_back(line("detail", "b", true, [](const FrameRecord& f) { return 100.0 * f.detail(); }));
+  Plot spacing{"Widest distance between points",
+               "In pixels, where more points of the store would narrow it and nothing hides it.",
+               t,
+               {},
+               cutsOf(report),
+               readableCount};
+  spacing.lines.push_back(line("widest", "b", true, [](const FrameRecord& f) { return f.widestSpacingPx; }));
   Plot bytes{"Bytes", "", t, {}, {}, readableBytes};
   bytes.lines.push_back(line("read from the store", "a", true, [](const FrameRecord& f) { return f.bytesRead; }));
   bytes.lines.push_back(line("nodes in memory", "b", false, [](const FrameRecord& f) { return f.residentBytes; }));
   Plot queue{"Nodes waiting to be read", "", t, {}, {}, readableCount};
   queue.lines.push_back(line("load queue", "b", true, [](const FrameRecord& f) { return f.queueLength; }));
-  return plotHtml(time) + plotHtml(percentilePlot(frames)) + plotHtml(points) + plotHtml(detail) + plotHtml(queue) +
-         plotHtml(bytes);
+  return plotHtml(time) + plotHtml(percentilePlot(frames)) + plotHtml(points) + plotHtml(detail) + plotHtml(spacing) +
+         plotHtml(queue) + plotHtml(bytes);
 }
 
 /// How fast the picture fills after each jump.
@@ -213,10 +223,13 @@ std::string stagesHtml(const std::vector<StageTime>& stages) {
   std::string bar = "<div class=\"stages\">";
   std::string rows = "<table><tr><th>stage</th><th class=\"n\">mean</th><th class=\"n\">95th percentile</th></tr>";
   for (const StageTime& stage : stages) {
+    std::string colour("k");
+    colour += std::to_string(&stage - stages.data());
     if (stage.onRenderThread && total > 0.0)
-      bar += "<i title=\"" + htmlEscape(stage.name) +
+      bar += "<i class=\"" + colour + "\" title=\"" + htmlEscape(stage.name) +
              "\" style=\"width:" + std::to_string(100.0 * stage.meanMs / total) + "%\"></i>";
-    rows += "<tr><td>" + htmlEscape(stage.name) + (stage.onRenderThread ? "" : " <small>(its own thread)</small>") +
+    rows += "<tr><td>" + (stage.onRenderThread ? "<i class=\"swatch " + colour + "\"></i>" : std::string()) +
+            htmlEscape(stage.name) + (stage.onRenderThread ? "" : " <small>(no part of the sum)</small>") +
             "</td><td class=\"n\">" + readableMs(stage.meanMs) + "</td><td class=\"n\">" + readableMs(stage.p95Ms) +
             "</td></tr>";
   }

@@ -1,17 +1,21 @@
 // What strata-bench leaves behind: the trace, the page, the papers' tables.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
+#include <tuple>
 
 #include "core/image.h"
 #include "tests/support/programs.h"
 
 namespace strata::test {
 namespace {
+
+constexpr const char* kChromium = "/usr/bin/chromium";
 
 class Bench : public testing::Test {
  protected:
@@ -183,6 +187,69 @@ TEST_F(Bench, TheReportSaysWhatWasInThePageCache) {
   const std::string warm = report("flight").at("options").at("page cache");
   EXPECT_EQ(warm.find("left as it was: "), 0u) << warm;
   EXPECT_GT(report("flight").at("measures").at("points_read_per_pixel").get<double>(), 0.0);
+}
+
+// --- report.html in a browser
+
+/// Headless Chromium's picture of the flight's page in a window of this size; empty where it made none.
+Image pageIn(const std::filesystem::path& page, const std::string& png, int width, int height) {
+  const std::filesystem::path profile = page.parent_path() / "profile";
+  const Finished shown = runProgram(
+      kChromium, {"--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run",
+                  "--user-data-dir=" + profile.string(), "--screenshot=" + png,
+                  "--window-size=" + std::to_string(width) + "," + std::to_string(height), "file://" + page.string()});
+  return shown.exitCode == 0 && std::filesystem::exists(png) ? readPng(png) : Image{};
+}
+
+/// Share of a column of pixels that is not the paper's colour.
+double inkAt(const Image& image, int x) {
+  int ink = 0;
+  for (int y = 0; y < image.height; ++y) {
+    const std::uint32_t pixel =
+        image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x)];
+    ink += pixel != image.pixels[0] ? 1 : 0;
+  }
+  return static_cast<double>(ink) / image.height;
+}
+
+/// Rows from the top to the last one with ink.
+int inkedHeight(const Image& image) {
+  for (std::size_t i = image.pixels.size(); i > 0; --i)
+    if (image.pixels[i - 1] != image.pixels[0])
+      return static_cast<int>((i - 1) / static_cast<std::size_t>(image.width));
+  return 0;
+}
+
+TEST_F(Bench, ABrowserShowsTheReportOnADeskAndOnAPhoneWithNothingBeyondTheEdge) {
+  if (!std::filesystem::exists(kChromium)) GTEST_SKIP() << kChromium << " is not there";
+  const std::filesystem::path page = file("flight") / "report.html";
+  for (const auto& [name, width, height] : {std::tuple{"desk", 1200, 6000}, std::tuple{"phone", 390, 9000}}) {
+    const Image image = pageIn(page, file(std::string(name) + ".png").string(), width, height);
+    ASSERT_EQ(image.width, width);
+    // Pictures, plots and text: thousands of colours over a long page that ends within the window.
+    EXPECT_GT(std::set<std::uint32_t>(image.pixels.begin(), image.pixels.end()).size(), 1000u) << name;
+    EXPECT_GT(inkedHeight(image), 3000) << name;
+    EXPECT_LT(inkedHeight(image), height - 10) << name;
+    // The margins are as empty as the paper: nothing is cut off.
+    for (const int x : {0, 1, 2, 3, width - 4, width - 3, width - 2, width - 1}) EXPECT_EQ(inkAt(image, x), 0.0) << x;
+    EXPECT_GT(inkAt(image, width / 2), 0.2) << name;
+  }
+}
+
+TEST_F(Bench, ABrowserPrintsTheReport) {
+  if (!std::filesystem::exists(kChromium)) GTEST_SKIP() << kChromium << " is not there";
+  const std::filesystem::path pdf = file("report.pdf");
+  const Finished printed =
+      runProgram(kChromium, {"--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+                             "--user-data-dir=" + file("profile").string(), "--no-pdf-header-footer",
+                             "--print-to-pdf=" + pdf.string(), "file://" + (file("flight") / "report.html").string()});
+  ASSERT_EQ(printed.exitCode, 0) << printed.err;
+  const std::string text = readWhole(pdf);
+  std::size_t pages = 0;
+  for (std::size_t at = text.find("/Type /Page\n"); at != std::string::npos; at = text.find("/Type /Page\n", at + 1))
+    ++pages;
+  EXPECT_GE(pages, 2u);
+  EXPECT_LE(pages, 12u);
 }
 
 // --- the papers' tables
