@@ -1,0 +1,295 @@
+// Progressive drawing: Rumpler 2019, 4.1 and 4.2.2, with a made cloud of buildings at 1280 x 720. Prints one table
+// after the other. --small: a few 100 000 points, a few seconds. The camera moves a little in each frame that is timed,
+// so that no frame finds its picture finished.
+#include <algorithm>
+#include <bit>
+#include <cstdio>
+#include <functional>
+#include <string>
+
+#include "core/error.h"
+#include "core/image.h"
+#include "render/progressive_rasterizer.h"
+#include "render/shuffle.h"
+#include "render/stopwatch.h"
+#include "viewer/suite_clouds.h"
+
+namespace strata::bench {
+namespace {
+
+constexpr std::uint64_t kNoLimit = std::uint64_t{1} << 40;
+
+struct Scale {
+  std::uint64_t points = 10'000'000;
+  int frames = 15;  ///< of a median
+  int width = 1280, height = 720;
+  std::string pictures;  ///< folder; empty = none
+};
+
+struct Scene {
+  RenderList list;
+  View view, away;
+};
+
+Scene makeScene(const Scale& scale) {
+  const suite::Cloud cloud = suite::buildingCloud("buildings", scale.points);
+  Scene scene{suite::layered(cloud, 65536), cloud.outside, cloud.outside};
+  scene.view.width = scene.away.width = scale.width;
+  scene.view.height = scene.away.height = scale.height;
+  scene.away.target = scene.away.eye + (scene.away.eye - scene.away.target);
+  return scene;
+}
+
+std::unique_ptr<ProgressiveRasterizer> progressive(std::uint64_t pointsPerFrame, std::uint64_t pool,
+                                                   Shuffle shuffle = Shuffle::keyed) {
+  return createProgressiveRasterizer(createHeadlessContext(), {pointsPerFrame, kNoLimit, pool, shuffle, 1});
+}
+
+/// Takes all that the view shows into the pool and draws until the picture is finished.
+void fillPool(ProgressiveRasterizer& rasterizer, const RenderList& list, const View& view) {
+  Frame frame;
+  const ProgressiveOptions options = rasterizer.options();
+  rasterizer.setOptions({kNoLimit, kNoLimit});
+  while (!isFinished(rasterizer.draw(list, view, {}, frame))) {
+  }
+  rasterizer.setOptions(options);
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+struct Times {
+  double frame, gpu, upload, clear, reproject, fill, index, keep, read, resolve;
+};
+
+/// Medians over frames of a camera that creeps aside. `listOf` gives the frame's nodes.
+Times timeFrames(Rasterizer& rasterizer, const std::function<const RenderList&(int)>& listOf, View view, int frames) {
+  const auto* const steps = dynamic_cast<const ProgressiveRasterizer*>(&rasterizer);
+  std::vector<double> values[10];
+  Frame frame;
+  const glm::dvec3 step = 0.0005 * glm::distance(view.eye, view.target) * viewBasis(view).right;
+  for (int i = -2; i < frames; ++i) {
+    view.eye += step;
+    view.target += step;
+    Stopwatch watch;
+    const DrawStats stats = rasterizer.draw(listOf(i + 2), view, {}, frame);
+    const double ms = watch.lapMs();
+    if (i < 0) continue;
+    const ProgressiveStats p = steps != nullptr ? steps->progress() : ProgressiveStats{};
+    const double all[] = {ms,       stats.gpuMs, stats.uploadMs, p.clearMs, p.reprojectMs,
+                          p.fillMs, p.indexMs,   p.keepMs,       p.readMs,  stats.resolveMs};
+    for (int k = 0; k < 10; ++k) values[k].push_back(all[k]);
+  }
+  double m[10];
+  for (int k = 0; k < 10; ++k) m[k] = median(values[k]);
+  return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9]};
+}
+
+Times timeFrames(Rasterizer& rasterizer, const RenderList& list, const View& view, int frames) {
+  return timeFrames(
+      rasterizer, [&list](int) -> const RenderList& { return list; }, view, frames);
+}
+
+double millions(std::uint64_t points) { return static_cast<double>(points) * 1e-6; }
+
+/// 4.2.2: of the points in one frame's share of the pool, how many have the next point of their node there too.
+void shuffleTable(const Scale& scale) {
+  constexpr std::uint32_t kShares = 32;
+  std::printf("## 4.2.2: points whose successor is drawn in the same frame, pool in %u frames\n\n", kShares);
+  std::printf("| pool | perfect shuffle | keyed |\n|---|---|---|\n");
+  const std::uint32_t part = scale.points < 5'000'000 ? 64 : 1;
+  for (const std::uint32_t full : {1u << 25, 1u << 24, 30'000'000u, 25'000'000u, 20'000'000u}) {
+    const std::uint32_t size = full / part / 2 * 2;
+    const KeyedShuffle keyed(size, 1);
+    double together[2] = {};
+    for (const int way : {0, 1}) {
+      std::vector<std::uint32_t> points(kShares), pairs(kShares);
+      std::uint64_t last = kShares;
+      for (std::uint32_t i = 0; i < size; ++i) {
+        const std::uint32_t place = way == 0 ? perfectShuffle(i, size, perfectShuffles(size)) : keyed(i);
+        const std::uint64_t share = std::uint64_t{place} * kShares / size;
+        ++points[share];
+        pairs[share] += share == last;
+        last = share;
+      }
+      for (std::uint32_t s = 0; s < kShares; ++s)
+        together[way] = std::max(together[way], static_cast<double>(pairs[s]) / std::max(points[s], 1u));
+    }
+    std::printf("| %u%s | %.1f %% | %.1f %% |\n", size, std::has_single_bit(size) ? ", a power of two" : "",
+                100.0 * together[0], 100.0 * together[1]);
+    std::fflush(stdout);
+  }
+}
+
+void savePicture(const Scale& scale, const std::string& name, const Frame& frame) {
+  if (!scale.pictures.empty())
+    writePng(scale.pictures + "/" + name + ".png", {frame.width, frame.height, frame.colour});
+}
+
+/// Frames until shares of the pixels are final, after a jump of the camera to nodes that are in the pool.
+void convergenceTable(const Scale& scale, const Scene& scene) {
+  Frame wanted, frame;
+  {
+    const auto plain = createRasterizer(Backend::cpu, {}, nullptr);
+    plain->draw(scene.list, scene.view, {}, wanted);
+    savePicture(scale, "final", wanted);
+  }
+  std::printf("\n## Frames until pixels are final, of %.1f M points, and its turn\n\n",
+              millions(scene.list.pointCount));
+  std::printf("| pool | shuffle | a frame | turn | 90 %% | 99 %% | 100 %% |\n|---|---|---|---|---|---|---|\n");
+  const std::uint64_t pools[] = {scene.list.pointCount * 11 / 10, scene.list.pointCount * 22 / 10};
+  for (const std::uint64_t pool : pools)
+    for (const Shuffle shuffle : {Shuffle::keyed, Shuffle::perfect}) {
+      if (shuffle == Shuffle::perfect && pool != pools[0]) continue;
+      const auto rasterizer = progressive(kNoLimit, pool, shuffle);
+      for (const int share : {5, 10, 20, 40}) {
+        fillPool(*rasterizer, scene.list, scene.view);
+        rasterizer->draw(scene.list, scene.away, {}, frame);
+        const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
+        rasterizer->setOptions({n, kNoLimit});
+        int reached[3] = {0, 0, 0};
+        for (int count = 1; reached[2] == 0 && count < 1000; ++count) {
+          rasterizer->draw(scene.list, scene.view, {}, frame);
+          std::size_t same = 0, all = 0;
+          for (std::size_t i = 0; i < wanted.pointId.size(); ++i) {
+            const bool covered = wanted.pointId[i] != Frame::kNoPoint;
+            all += covered;
+            same += covered && wanted.pointId[i] == frame.pointId[i];
+          }
+          const double part = static_cast<double>(same) / static_cast<double>(all);
+          for (const int k : {0, 1, 2})
+            if (reached[k] == 0 && part >= (k == 0 ? 0.9 : k == 1 ? 0.99 : 1.0)) reached[k] = count;
+          if (share == 20 && pool == pools[0] && (count == 2 || count == 8))
+            savePicture(scale, std::string(shuffle == Shuffle::keyed ? "keyed" : "perfect") + std::to_string(count),
+                        frame);
+        }
+        std::printf("| %.1f M | %s | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
+                    shuffle == Shuffle::keyed ? "keyed" : "perfect", millions(n),
+                    static_cast<double>(rasterizer->progress().poolPoints) / static_cast<double>(n), reached[0],
+                    reached[1], reached[2]);
+        std::fflush(stdout);
+      }
+    }
+}
+
+/// Figure 4.1 and Table 4.2: the passes over the number of new points.
+void fillTable(const Scale& scale, const Scene& scene) {
+  std::printf("\n## Figure 4.1 and Table 4.2: milliseconds over the points of a frame\n\n");
+  std::printf("| a frame | frame | upload | clear | reproject | fill | index | keep | read back | resolve |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
+  const auto rasterizer = progressive(kNoLimit, scene.list.pointCount * 11 / 10);
+  fillPool(*rasterizer, scene.list, scene.view);
+  for (const int share : {100, 50, 20, 10, 5, 2, 1}) {
+    const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
+    rasterizer->setOptions({n, kNoLimit});
+    const Times t = timeFrames(*rasterizer, scene.list, scene.view, scale.frames);
+    std::printf("| %.2f M | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f | %.1f |\n", millions(n), t.frame,
+                t.upload, t.clear, t.reproject, t.fill, t.index, t.keep, t.read, t.resolve);
+    std::fflush(stdout);
+  }
+}
+
+/// Table 4.3: all places of a pool, half of them taken, then all, of which the view shows half.
+void halfFullTable(const Scale& scale, const Scene& scene) {
+  RenderList half, rest = scene.list;
+  for (std::size_t i = 0; i < rest.items.size(); ++i)
+    if (i % 2 == 0) {
+      half.items.push_back(rest.items[i]);
+      half.pointCount += rest.items[i].pointCount;
+    }
+  std::erase_if(rest.items, [i = std::size_t{0}](const RenderItem&) mutable { return i++ % 2 == 0; });
+  rest.pointCount -= half.pointCount;
+  const std::uint64_t pool = scene.list.pointCount * 101 / 100;
+  const auto rasterizer = progressive(pool, pool);
+  fillPool(*rasterizer, half, scene.view);
+  const auto fill = [&] {
+    return 100.0 * (1.0 - static_cast<double>(rasterizer->progress().poolFree) / static_cast<double>(pool));
+  };
+  std::printf("\n## Table 4.3: a whole turn in one frame, %.1f M places, %.1f M points shown\n\n", millions(pool),
+              millions(half.pointCount));
+  std::printf("| pool | fill, ms | frame, ms |\n|---|---|---|\n");
+  for (const bool full : {false, true}) {
+    if (full) fillPool(*rasterizer, rest, scene.view);
+    const double taken = fill();
+    const Times t = timeFrames(*rasterizer, half, scene.view, scale.frames);
+    std::printf("| %.0f %% full | %.1f | %.1f |\n", taken, t.fill, t.frame);
+    std::fflush(stdout);
+  }
+}
+
+/// Table 4.4: against drawing everything in each frame.
+void comparisonTable(const Scale& scale, const Scene& scene) {
+  std::printf("\n## Table 4.4: %.1f M points, %d x %d, milliseconds a frame\n\n", millions(scene.list.pointCount),
+              scale.width, scale.height);
+  std::printf("| way | frame | drawing by OpenGL's clock |\n|---|---|---|\n");
+  const auto row = [](const std::string& name, const Times& t) {
+    std::printf("| %s | %.1f | %.1f |\n", name.c_str(), t.frame, t.gpu);
+    std::fflush(stdout);
+  };
+  RasterizerOptions room;
+  room.uploadBytesPerFrame = kNoLimit;
+  for (const Backend backend : {Backend::points, Backend::compute32, Backend::cpu}) {
+    const auto plain = createRasterizer(backend, room, backend == Backend::cpu ? nullptr : createHeadlessContext());
+    row("everything, " + std::string(plain->name()), timeFrames(*plain, scene.list, scene.view, scale.frames));
+  }
+  const std::uint64_t pool = scene.list.pointCount * 11 / 10;
+  const auto rasterizer = progressive(kNoLimit, pool);
+  fillPool(*rasterizer, scene.list, scene.view);
+  for (const int share : {1, 10, 20, 50}) {
+    rasterizer->setOptions({pool / static_cast<std::uint64_t>(share), kNoLimit});
+    char name[64];
+    std::snprintf(name, sizeof name, "progressive, %.2f M a frame", millions(pool) / share);
+    row(name, timeFrames(*rasterizer, scene.list, scene.view, scale.frames));
+  }
+  // Two lists that take turns in a pool which cannot hold both: the memory manager has work in each frame.
+  RenderList lists[2];
+  for (std::size_t i = 0; i < scene.list.items.size(); ++i) {
+    lists[i % 2].items.push_back(scene.list.items[i]);
+    lists[i % 2].pointCount += scene.list.items[i].pointCount;
+  }
+  const std::uint64_t n = pool / 20, small = std::max(lists[0].pointCount, lists[1].pointCount) * 11 / 10;
+  const auto busy = progressive(n, small);
+  busy->setOptions({n, n / 2});
+  char name[96];
+  std::snprintf(name, sizeof name, "progressive, %.2f M a frame, %.2f M written into a full pool", millions(n),
+                millions(n / 2));
+  row(name, timeFrames(
+                *busy, [&](int i) -> const RenderList& { return lists[i / 40 % 2]; }, scene.view, 80 + scale.frames));
+}
+
+int run(const Scale& scale) {
+  std::printf("# Progressive drawing on %s\n\n", progressive(1, 1000)->device().c_str());
+  shuffleTable(scale);
+  const Scene scene = makeScene(scale);
+  convergenceTable(scale, scene);
+  fillTable(scale, scene);
+  halfFullTable(scale, scene);
+  comparisonTable(scale, scene);
+  return 0;
+}
+
+}  // namespace
+}  // namespace strata::bench
+
+int main(int argc, char** argv) {
+  strata::bench::Scale scale;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--small") {
+      scale = {300'000, 3, 320, 180, scale.pictures};
+    } else if (argument == "--pictures" && i + 1 < argc) {
+      scale.pictures = argv[++i];
+    } else {
+      std::fprintf(stderr, "usage: progressive_bench [--small] [--pictures FOLDER]\n");
+      return 2;
+    }
+  }
+  try {
+    return strata::bench::run(scale);
+  } catch (const strata::Error& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return 1;
+  }
+}
