@@ -186,6 +186,14 @@ const CoarseDepth* Streamer::fillCoarseDepth(const Task& task) {
   return frontDepth_.get();  // which only this thread changes
 }
 
+void Streamer::copyCoarseDepth(std::vector<float>& depths) const {
+  depths.clear();
+  const std::lock_guard lock(depthMutex_);
+  for (int row = 0; row < CoarseDepth::kSide; ++row)
+    for (int column = 0; column < CoarseDepth::kSide; ++column)
+      depths.push_back(static_cast<float>(frontDepth_->depth(column, row)));
+}
+
 void Streamer::runPass(const Task& task, bool isNewView) {
   const auto start = std::chrono::steady_clock::now();
   TraceScope pass(lodLane_, "LOD pass");

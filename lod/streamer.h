@@ -116,6 +116,9 @@ class Streamer {
 
   /// Any thread.
   StreamerStats stats() const;
+  /// Any thread; for pictures of it. The depths of the newest coarse depth buffer, CoarseDepth::kSide squared, row by
+  /// row; infinite where nothing is hidden.
+  void copyCoarseDepth(std::vector<float>& depths) const;
 
  private:
   /// What an LOD pass works on.
@@ -175,7 +178,7 @@ class Streamer {
   bool readyIsNew_ = false;
 
   // Guarded by depthMutex_: what hides what, for the loaders. The LOD thread fills the other one and swaps them.
-  std::mutex depthMutex_;
+  mutable std::mutex depthMutex_;
   std::unique_ptr<CoarseDepth> frontDepth_ = std::make_unique<CoarseDepth>();
 
   // Used by the LOD thread.

@@ -99,6 +99,12 @@ bool Layers::waitUntilComplete(std::chrono::milliseconds timeout) {
   return whole;
 }
 
+void Layers::coarseDepth(std::vector<float>& depths) const {
+  const auto shown = std::find(shown_.begin(), shown_.end(), true);
+  depths.clear();
+  if (shown != shown_.end()) streamers_[static_cast<std::size_t>(shown - shown_.begin())]->copyCoarseDepth(depths);
+}
+
 StreamerStats Layers::stats() const {
   StreamerStats sum;
   for (const auto& streamer : streamers_) {

@@ -34,6 +34,9 @@ class Layers {
   std::size_t indexOfItem(std::size_t item) const;
   /// Summed over the layers; lodMs is the longest.
   StreamerStats stats() const;
+  StreamerStats statsOf(std::size_t layer) const { return streamers_[layer]->stats(); }
+  /// Of the first layer that is shown; see Streamer::copyCoarseDepth().
+  void coarseDepth(std::vector<float>& depths) const;
 
  private:
   std::vector<std::shared_ptr<const Store>> stores_;

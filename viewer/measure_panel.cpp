@@ -62,10 +62,6 @@ bool drawMeasurementLine(Measurement& m, bool& show) {
 void drawMeasuring(ToolsState& state) {
   const Measurement& current = *state.measure.current();
   const std::size_t least = leastPoints(current.kind), count = current.points.size();
-  if (count < least)
-    ImGui::TextDisabled("click the %s", count == 0 ? (least == 1 ? "point" : "first point") : "next point");
-  else
-    ImGui::TextDisabled("next point, or double click to end");
   if (count >= least && ImGui::SmallButton("done")) state.measure.finish();
   if (count >= least) ImGui::SameLine();
   if (state.measure.active() && ImGui::SmallButton("stop measuring")) state.measure.cancel();

@@ -31,6 +31,15 @@ void MeasureTool::add(const glm::dvec3& point) {
   if (const MeasureKind kind = current_->kind; current_->points.size() == mostPoints(kind)) begin(kind);
 }
 
+std::string MeasureTool::hint() const {
+  if (!current_) return {};
+  const std::size_t least = leastPoints(current_->kind), count = current_->points.size();
+  std::string text = std::string(measureName(current_->kind)) + ": ";
+  if (count == 0) return text + (least == 1 ? "click a point" : "click the first point");
+  if (count < least) return text + "click the next point";
+  return text + "click the next point, or double click to end";
+}
+
 void MeasureTool::undo() {
   if (current_ && !current_->points.empty()) current_->points.pop_back();
 }

@@ -19,6 +19,8 @@ class MeasureTool {
   /// A click on a point. A measurement that has all its points is kept, and the next of its kind begins. The same point
   /// twice in a row counts once.
   void add(const glm::dvec3& point);
+  /// What the next click is for: "distance: click the first point"; empty where none is active.
+  std::string hint() const;
   /// Takes back the last click.
   void undo();
   /// Keeps what is whole and ends measuring.

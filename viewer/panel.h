@@ -1,10 +1,13 @@
 #pragma once
+#include <bitset>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "core/frame.h"
 #include "lod/streamer.h"
 #include "render/rasterizer.h"
+#include "viewer/monitor.h"
 
 namespace strata {
 
@@ -12,6 +15,17 @@ namespace strata {
 struct ViewerSettings {
   SelectionOptions selection;
   DrawOptions draw;
+  double fovY = 1.0;  ///< of the camera, radians
+  Backend backend = Backend::automatic;
+};
+
+/// Ends of the sliders: what the scan holds.
+struct ColourLimits {
+  glm::vec2 intensity{0.0f, 65535.0f};
+  glm::dvec2 elevation{0.0, 1.0};
+  int levels = 1;            ///< of the deepest store
+  std::bitset<256> classes;  ///< that were met
+  DrawOptions automatic;     ///< whose ranges "auto" brings back
 };
 
 /// What the panel shows.
@@ -22,6 +36,8 @@ struct ViewerStats {
   double frameMs = 0.0;  ///< smoothed
   DrawStats draw;
   StreamerStats streamer;
+  Monitor monitor;
+  std::size_t nodesDrawn = 0;
   std::uint32_t missingNodes = 0;
   bool complete = false;
   double flySpeed = 0.0;  ///< metres a second that the keys move
@@ -35,7 +51,15 @@ void drawHelp(bool& open);
 /// Shows `text` until the user closes it, which empties it.
 void drawError(std::string& text);
 
-/// Draws the panel; between Window::beginFrame() and finishFrame(). True when a setting was changed.
-bool drawPanel(ViewerSettings& settings, const ViewerStats& stats);
+/// A turning arc in the corner of the picture for as long as detail is missing.
+void drawSpinner(const ViewerStats& stats);
+
+/// What is to be done next, at the upper edge of the picture; nothing where the text is empty.
+void drawHint(const std::string& text);
+
+/// Draws the panel; between Window::beginFrame() and finishFrame(). True when a setting was changed. `inside` draws one
+/// more section.
+bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourLimits& limits,
+               const std::function<void()>& inside);
 
 }  // namespace strata

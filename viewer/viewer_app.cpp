@@ -9,8 +9,10 @@
 #include "core/image.h"
 #include "viewer/camera_control.h"
 #include "viewer/choose_panel.h"
+#include "viewer/inside_panel.h"
 #include "viewer/layers.h"
 #include "viewer/measure_panel.h"
+#include "viewer/opened_stores.h"
 #include "viewer/overlay.h"
 #include "viewer/panel.h"
 #include "viewer/point_lookup.h"
@@ -34,41 +36,8 @@ constexpr int kClickReach = 6;  // pixels beside a point that still mean it
 constexpr std::uint32_t kPointedColour = 0xffffc840u;
 constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
 
-std::vector<std::shared_ptr<const Store>> openStores(const std::vector<std::string>& paths) {
-  std::vector<std::shared_ptr<const Store>> stores;
-  for (const std::string& path : paths) stores.push_back(std::make_shared<const Store>(path));
-  return stores;
-}
-
-Scene surveyAll(const std::vector<std::shared_ptr<const Store>>& stores) {
-  std::vector<glm::dvec3> points;
-  for (const auto& store : stores) {
-    const Scene scene = surveyScene(*store);
-    points.insert(points.end(), scene.points.begin(), scene.points.end());
-  }
-  return makeScene(std::move(points));
-}
-
-std::string layerNames(const std::vector<std::string>& paths) {
-  std::string names;
-  for (const std::string& path : paths) {
-    const std::filesystem::path folder(path.back() == '/' ? path.substr(0, path.size() - 1) : path);
-    names += (names.empty() ? "" : ", ") + folder.stem().string();
-  }
-  return names;
-}
-
-std::vector<std::string> namesOf(const std::vector<std::string>& paths) {
-  std::vector<std::string> names;
-  for (const std::string& path : paths) names.push_back(layerNames({path}));
-  return names;
-}
-
-/// A name that the user gave, without what has no place in a file's.
-std::string fileNameOf(std::string name) {
-  for (char& c : name)
-    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 32) c = '_';
-  return name.empty() || name.front() == '.' ? "_" + name : name;
+glm::vec2 intensityLimits(const AttributeRange& range) {
+  return {static_cast<float>(range.min), static_cast<float>(std::max(range.max, range.min + 1.0))};
 }
 
 /// Draws into the window's context.
@@ -85,12 +54,14 @@ class ViewerApp {
  public:
   explicit ViewerApp(const ViewerOptions& options)
       : options_(options),
-        layers_(openStores(options.stores), options.streamer),
-        scene_(surveyAll(layers_.stores())),
+        opened_(openStores(options.stores)),
+        layers_(opened_.stores, options.streamer),
+        scene_(surveyStores(layers_.stores())),
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
                 options.screenshot.empty()),
         screen_(Window::getProc()),
         profile_(Window::getProc()),
+        inside_(Window::getProc()),
         rasterizer_(createAnyRasterizer(options, layers_)),
         progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
@@ -99,11 +70,24 @@ class ViewerApp {
     applyDrawFlags(options.draw, settings_.draw);
     settings_.draw.pointSize = options.pointSize;
     settings_.draw.edl = options.edl;
+    settings_.backend = options.backend;
+    backend_ = options.backend;
     stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
-    stats_.layers = layerNames(options.stores);
-    for (const auto& store : layers_.stores()) stats_.pointsInStores += store->info().points;
-    tools_.layers = namesOf(options.stores);
-    tools_.shown.assign(options.stores.size(), true);
+    stats_.error = opened_.failures;
+    for (const std::size_t i : opened_.asked) tools_.layers.push_back(layerNames({options.stores[i]}));
+    tools_.shown.assign(opened_.asked.size(), true);
+    lostShown_.assign(options.stores.size(), true);
+    limits_.elevation = settings_.draw.elevationRange;
+    limits_.automatic = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
+    for (const auto& store : layers_.stores()) {
+      stats_.pointsInStores += store->info().points;
+      stats_.layers += (stats_.layers.empty() ? "" : ", ") +
+                       tools_.layers[static_cast<std::size_t>(&store - layers_.stores().data())];
+      limits_.levels = std::max(limits_.levels, store->info().levels);
+      const int intensity = store->info().layout.find(attribute::kIntensity);
+      if (intensity >= 0)
+        limits_.intensity = intensityLimits(store->info().ranges[static_cast<std::size_t>(intensity)]);
+    }
     tools_.classes = settings_.draw.classes;
     planes_ = settings_.draw.clip.planes;
     for (const Box& box : settings_.draw.clip.boxes) tools_.clip.add(box);
@@ -114,7 +98,8 @@ class ViewerApp {
     settings_.draw = project.draw;
     settings_.selection.pointBudget = project.pointBudget;
     settings_.selection.pointsPerPixel = project.pointsPerPixel;
-    tools_.shown = project.shown;
+    lostShown_ = project.shown;
+    for (std::size_t i = 0; i < opened_.asked.size(); ++i) tools_.shown[i] = project.shown[opened_.asked[i]];
     tools_.bookmarks = project.bookmarks;
     tools_.classes = project.draw.classes;
     tools_.clip.boxes() = project.clipBoxes;
@@ -205,6 +190,8 @@ class ViewerApp {
   void useTools(const WindowInput& input) {
     if (input.help) helpOpen_ = !helpOpen_;
     if (input.measure) tools_.measure.begin(MeasureKind::distance);
+    if (input.profile) tools_.measure.begin(MeasureKind::profile);
+    if (input.clipBox) tools_.clip.add(boxInView(control_.view(), scene_.bounds));
     if (input.keep) tools_.measure.finish();
     if (input.takeBack) tools_.measure.undo();
     if (input.drop) tools_.measure.cancel();
@@ -238,7 +225,9 @@ class ViewerApp {
   void drawFrame(int width, int height) {
     control_.resize(width, height);
     const auto start = std::chrono::steady_clock::now();
-    layers_.setView(control_.view(), motion_.ahead(control_.view(), start));
+    const View ahead = motion_.ahead(control_.view(), start);
+    const View& chosenFor = inside_.chosenFor(control_.view());
+    layers_.setView(chosenFor, chosenFor == control_.view() ? ahead : chosenFor);
     const RenderList& list = layers_.beginFrame();
     list_ = &list;
     for (std::size_t i = 0; i < list.items.size(); ++i) tools_.census.add(layers_.indexOfItem(i), *list.items[i].node);
@@ -252,14 +241,59 @@ class ViewerApp {
     stats_.missingNodes = list.missingNodes;
     stats_.complete = layers_.complete();
     stats_.streamer = layers_.stats();
+    stats_.nodesDrawn = list.items.size();
+    stats_.monitor.add(start, {ms, stats_.draw.pointsDrawn, list.items.size(), list.missingNodes}, stats_.streamer);
+    limits_.classes = tools_.census.present();
+    sayDamage();
+  }
+
+  /// Names the layers of which nodes were given up, once for each number of them.
+  void sayDamage() {
+    if (stats_.streamer.nodesGivenUp == damageSaid_) return;
+    damageSaid_ = stats_.streamer.nodesGivenUp;
+    stats_.error.clear();
+    for (std::size_t i = 0; i < layers_.stores().size(); ++i)
+      if (const std::uint64_t lost = layers_.statsOf(i).nodesGivenUp; lost > 0)
+        stats_.error += (stats_.error.empty() ? "" : "\n") + tools_.layers[i] + ": " + std::to_string(lost) +
+                        " of the nodes seen so far cannot be read and are left out; the rest is shown";
+  }
+
+  /// Takes another rasterizer where one was chosen; one that cannot work here is refused and the old one stays.
+  void switchBackend() {
+    if (settings_.backend == backend_) return;
+    try {
+      rasterizer_ = createRasterizer(settings_.backend, {}, adoptCurrentContext(Window::getProc()));
+      progressive_ = nullptr;
+      backend_ = settings_.backend;
+      stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
+    } catch (const Error& error) {
+      stats_.error = error.what();
+      settings_.backend = backend_;
+    }
+  }
+
+  bool drawSettingsPanel() {
+    settings_.fovY = control_.view().fovY;
+    const bool changed = drawPanel(settings_, stats_, limits_, [this] { inside_.drawSection(stats_.nodesDrawn); });
+    if (!changed) return false;
+    if (settings_.fovY != control_.view().fovY) {
+      View view = control_.view();
+      view.fovY = settings_.fovY;
+      control_.setView(view);
+    }
+    switchBackend();
+    layers_.setSelection(settings_.selection);
+    return true;
   }
 
   /// Measurements, panels and messages. True when something was changed that the picture shows.
   bool drawOver() {
     drawClipBoxes(tools_.clip, control_.view());
     drawMeasurements(tools_.measure, control_.view(), tools_.picked);
-    bool changed = drawPanel(settings_, stats_);
-    if (changed) layers_.setSelection(settings_.selection);
+    if (list_ != nullptr) inside_.drawOver(layers_, *list_, control_.view());
+    drawSpinner(stats_);
+    drawHint(tools_.measure.hint());
+    bool changed = drawSettingsPanel();
     if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
     const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);
@@ -303,23 +337,31 @@ class ViewerApp {
 
   void saveProject() {
     const std::string file = options_.project.empty() ? tools_.layers.front() + ".project.json" : options_.project;
-    save(file, projectJson(file, {options_.stores, tools_.shown, control_.view(), settings_.draw, tools_.clip.boxes(),
+    std::vector<bool> shown = lostShown_;  // what is not there today is kept for another day
+    for (std::size_t i = 0; i < opened_.asked.size(); ++i) shown[opened_.asked[i]] = tools_.shown[i];
+    save(file, projectJson(file, {options_.stores, shown, control_.view(), settings_.draw, tools_.clip.boxes(),
                                   settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
                                   tools_.measure.kept()}));
   }
 
   const ViewerOptions options_;
+  const OpenedStores opened_;
   Layers layers_;
   const Scene scene_;
   Window window_;
   Screen screen_;
   ProfilePanel profile_;
+  InsidePanel inside_;
   std::unique_ptr<Rasterizer> rasterizer_;
-  ProgressiveRasterizer* const progressive_;  ///< rasterizer_, or null where that draws everything in each frame
+  ProgressiveRasterizer* progressive_;  ///< rasterizer_, or null where that draws everything in each frame
   CameraControl control_;
   CameraMotion motion_;
   ViewerSettings settings_;
   ViewerStats stats_;
+  ColourLimits limits_;
+  Backend backend_ = Backend::automatic;  ///< of rasterizer_, as asked for
+  std::uint64_t damageSaid_ = 0;          ///< nodes given up that the user was told of
+  std::vector<bool> lostShown_;           ///< by path asked for: what the project said
   ToolsState tools_;
   PointLookup lookup_;
   std::vector<glm::dvec4> planes_;  ///< of the command line

@@ -67,6 +67,8 @@ void readKeys(WindowInput& input) {
   input.drop = pressed(GLFW_KEY_ESCAPE);
   input.save = ImGui::GetIO().KeyCtrl && pressed(GLFW_KEY_S);
   input.measure = pressed(GLFW_KEY_M);
+  input.profile = pressed(GLFW_KEY_X);
+  input.clipBox = pressed(GLFW_KEY_B);
   input.help = pressed(GLFW_KEY_H) || pressed(GLFW_KEY_F1);
   if (ImGui::GetIO().KeyCtrl) return;  // no flying with a shortcut
   input.fly.forward = held(GLFW_KEY_W) - held(GLFW_KEY_S);

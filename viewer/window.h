@@ -28,12 +28,14 @@ struct WindowInput {
   bool keep = false, takeBack = false, drop = false;  ///< Enter, Backspace, Escape
   bool save = false;                                  ///< Control + S
   bool measure = false;                               ///< M: a distance
+  bool profile = false;                               ///< X: a cross-section
+  bool clipBox = false;                               ///< B: a new clip box
   bool help = false;                                  ///< H or F1
 
   /// Nothing that changes the picture.
   bool idle() const {
     return !dragging && !leftPressed && !rightPressed && wheel == 0.0 && fly.still() && !frameAll && !front && !side &&
-           !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure &&
+           !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure && !profile && !clipBox &&
            !help;
   }
 };

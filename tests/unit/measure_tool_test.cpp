@@ -39,6 +39,19 @@ TEST(MeasureTool, APolylineGrowsUntilItIsFinished) {
   EXPECT_EQ(tool.kept()[0].points.size(), 4u);
 }
 
+TEST(MeasureTool, SaysWhatTheNextClickIsFor) {
+  MeasureTool tool;
+  EXPECT_EQ(tool.hint(), "");
+  tool.begin(MeasureKind::polyline);
+  EXPECT_EQ(tool.hint(), "polyline: click the first point");
+  tool.add({});
+  EXPECT_EQ(tool.hint(), "polyline: click the next point");
+  tool.add(glm::dvec3(1.0));
+  EXPECT_EQ(tool.hint(), "polyline: click the next point, or double click to end");
+  tool.finish();
+  EXPECT_EQ(tool.hint(), "");
+}
+
 TEST(MeasureTool, TheSamePointTwiceInARowCountsOnce) {
   MeasureTool tool;
   tool.begin(MeasureKind::polyline);
