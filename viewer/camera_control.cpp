@@ -196,6 +196,14 @@ View glided(const View& from, const View& to, double u) {
   return now;
 }
 
+const char* modeName(MoveMode mode) {
+  return mode == MoveMode::orbit ? "orbit" : mode == MoveMode::fly ? "fly" : "earth";
+}
+
+MoveMode nextMode(MoveMode mode) {
+  return mode == MoveMode::orbit ? MoveMode::fly : mode == MoveMode::fly ? MoveMode::earth : MoveMode::orbit;
+}
+
 void CameraControl::advance(double seconds) {
   if (!glide_) return;
   glide_->u += seconds / kGlideSeconds;

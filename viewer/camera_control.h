@@ -86,6 +86,9 @@ enum class MoveMode {
   earth   ///< slides over the ground, orbits, goes nearer
 };
 
+const char* modeName(MoveMode mode);  ///< "orbit", "fly", "earth"
+MoveMode nextMode(MoveMode mode);
+
 /// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
 class CameraControl {
  public:

@@ -188,6 +188,7 @@ void drawStats(const ViewerStats& stats) {
   char share[16];
   std::snprintf(share, sizeof share, "%.1f %%", 100.0 * monitor.latest(Series::hitRate));
   line("found there", share);
+  line("moving (G)", modeName(stats.mode));
   if (stats.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(stats.draw.gpuBytes)));
   line("LOD pass", readableMs(stats.streamer.lodMs));
   line("fly speed", readableCount(stats.flySpeed) + " m/s");
@@ -206,6 +207,9 @@ void drawHelp(bool& open) {
                                       {"wheel", "nearer to the point under the cursor, away"},
                                       {"click", "coordinates and attributes of the point; a measurement's next point"},
                                       {"double click", "go to the point"},
+                                      {"G", "the next way of moving: orbit, fly, earth"},
+                                      {"    fly", "left drag turns the head, the wheel sets the speed"},
+                                      {"    earth", "left drag slides over the ground, right drag orbits"},
                                       {"W A S D, E Q", "fly; shift: five times as fast"},
                                       {"F", "show everything"},
                                       {"1 3 7", "from the front, the side, the top"},
@@ -213,14 +217,17 @@ void drawHelp(bool& open) {
                                       {"M, X", "measure a distance, a cross-section"},
                                       {"B", "new clip box; drag its dots"},
                                       {"Enter, Backspace, Escape", "measuring: keep, take back a point, drop"},
-                                      {"Control + S, Control + Q", "save the project, quit"},
+                                      {"P", "pictures of any size, camera paths, films"},
+                                      {"K, R, space", "camera path: set a key, record, play"},
+                                      {"Control + P", "take the picture at once"},
+                                      {"Control + S, Control + Q", "save the project (and the path), quit"},
                                       {"H, F1", "this help"}};
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
   if (ImGui::Begin("Keys and mouse", &open, ImGuiWindowFlags_AlwaysAutoResize))
     for (const auto& key : kKeys) {
       ImGui::TextUnformatted(key[0]);
-      ImGui::SameLine(190.0f);
+      ImGui::SameLine(15.0f * ImGui::GetFontSize());
       ImGui::TextUnformatted(key[1]);
     }
   ImGui::End();

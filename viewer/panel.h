@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "lod/streamer.h"
 #include "render/rasterizer.h"
+#include "viewer/camera_control.h"
 #include "viewer/monitor.h"
 
 namespace strata {
@@ -40,6 +41,7 @@ struct ViewerStats {
   std::size_t nodesDrawn = 0;
   std::uint32_t missingNodes = 0;
   bool complete = false;
+  MoveMode mode = MoveMode::orbit;
   double flySpeed = 0.0;  ///< metres a second that the keys move
   std::string error;      ///< stays until it is closed
   std::string notice;     ///< what was done last

@@ -7,9 +7,11 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "core/log.h"
 #include "viewer/camera_control.h"
 #include "viewer/choose_panel.h"
 #include "viewer/inside_panel.h"
+#include "viewer/keeper.h"
 #include "viewer/layers.h"
 #include "viewer/measure_panel.h"
 #include "viewer/opened_stores.h"
@@ -31,6 +33,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot's full detail
 constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
+constexpr double kNearShare = 1e-5;  // of the scan's diagonal: how near the eye may come to something small
 constexpr int kPanelFrames = 2;
 constexpr int kClickReach = 6;  // pixels beside a point that still mean it
 constexpr std::uint32_t kPointedColour = 0xffffc840u;
@@ -58,13 +61,19 @@ class ViewerApp {
         layers_(opened_.stores, options.streamer),
         scene_(surveyStores(layers_.stores())),
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
-                options.screenshot.empty()),
+                options.screenshot.empty() && options.picture.empty()),
         screen_(Window::getProc()),
         profile_(Window::getProc()),
         inside_(Window::getProc()),
         rasterizer_(createAnyRasterizer(options, layers_)),
         progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
+    View first = control_.view();
+    first.nearPlane = std::min(first.nearPlane, kNearShare * scene_.bounds.diagonal());
+    control_.setView(first);
+    keeper_.state().pathFile = layerNames({options.stores.front()}) + ".path.json";
+    keeper_.state().filmFile = layerNames({options.stores.front()}) + ".mp4";
+    keeper_.state().pictureFile = layerNames({options.stores.front()}) + ".png";
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
     applyDrawFlags(options.draw, settings_.draw);
@@ -114,19 +123,25 @@ class ViewerApp {
     bool idle = false;
     while (!window_.closed()) {
       const WindowInput input = window_.beginFrame(idle ? kIdleWait : 0.0);
-      if (input.width == 0 || input.height == 0) {  // minimised
+      if (keeper_.working()) {
+        work(input);
+        idle = input.hidden;
+        continue;
+      }
+      if (input.hidden) {
         window_.finishFrame();
         idle = true;
         continue;
       }
       steer(input);
       useTools(input);
+      useKeeper(input);
       drawFrame(input.width, input.height);
       const bool changed = drawOver();
       window_.finishFrame();
       window_.present();
       idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
-             !lookup_.pending() && !profile_.reading() && !window_.panelInUse();
+             !lookup_.pending() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
     }
   }
 
@@ -147,7 +162,56 @@ class ViewerApp {
     writePng(file, screen_.read(input.width, input.height));
   }
 
+  /// The scene alone, in any size.
+  void picture(const std::string& file, const PictureSize& size) {
+    View view = control_.view();
+    view.width = size.width;
+    view.height = size.height;
+    const DrawOptions draw = scaledToPicture(settings_.draw, options_.size.height, size.height);
+    PictureTaker taker({file, view, draw, settings_.selection}, layers_, *rasterizer_);
+    while (!taker.goOn(kLongestWait)) {
+    }
+    if (taker.unfinishedParts() > 0)
+      logWarning(file + ": " + std::to_string(taker.unfinishedParts()) + " parts lack detail that could not be had");
+  }
+
  private:
+  Keeper::Scene keeperScene() {
+    return {layers_, *rasterizer_, settings_.draw, settings_.selection, options_.stores.front()};
+  }
+
+  /// A frame of the progress while a picture or a film is being drawn; behind it stands the newest frame.
+  void work(const WindowInput& input) {
+    if (!input.hidden) window_.drawPicture(screen_.texture());
+    keeper_.goOn(keeperScene(), input.drop);
+    tell();
+    drawError(stats_.error);
+    window_.finishFrame();
+    if (!input.hidden) window_.present();
+  }
+
+  void tell() {
+    if (const std::string notice = keeper_.takeNotice(); !notice.empty()) stats_.notice = notice;
+    if (const std::string error = keeper_.takeError(); !error.empty()) stats_.error = error;
+  }
+
+  /// Keys of camera paths, and the path that is being recorded or played.
+  void useKeeper(const WindowInput& input) {
+    KeepState& state = keeper_.state();
+    if (input.pictures) state.open = !state.open;
+    if (input.takePicture) keeper_.startPicture(control_.view(), keeperScene());
+    if (input.pathKey) {
+      keeper_.addKey(control_.view());
+      stats_.notice = "key " + std::to_string(state.path.keys().size()) + " of the camera path is set";
+    }
+    if (input.record) keeper_.toggleRecording(control_.view());
+    if (input.play) keeper_.togglePlaying();
+    const bool handOn = input.dragging || input.wheel != 0.0 || !input.fly.still() || control_.gliding();
+    if (handOn) keeper_.stopPlaying();
+    if (const auto view = keeper_.play(control_.view(), input.seconds)) control_.setView(*view);
+    keeper_.record(control_.view(), input.seconds);
+  }
+
   /// The world point below the cursor in the newest picture, where there is one.
   std::optional<glm::dvec3> pointUnder(const glm::dvec2& cursor) const {
     const int x = static_cast<int>(std::floor(cursor.x));
@@ -166,8 +230,8 @@ class ViewerApp {
     if (input.leftPressed && tools_.clip.press(control_.view(), input.cursor)) {
       control_.release();
     } else if (input.leftPressed)
-      control_.press(CameraControl::Drag::orbit, input.cursor, pointUnder(input.cursor));
-    if (input.rightPressed) control_.press(CameraControl::Drag::pan, input.cursor, pointUnder(input.cursor));
+      control_.pressLeft(input.cursor, pointUnder(input.cursor));
+    if (input.rightPressed) control_.pressRight(input.cursor, pointUnder(input.cursor));
     if (input.dragging && tools_.clip.held())
       tools_.clip.move(control_.view(), input.cursor);
     else if (input.dragging)
@@ -181,6 +245,8 @@ class ViewerApp {
     if (input.front) control_.glideTo(standardView(view, scene_.bounds, StandardView::front));
     if (input.side) control_.glideTo(standardView(view, scene_.bounds, StandardView::side));
     if (input.top) control_.glideTo(standardView(view, scene_.bounds, StandardView::top));
+    if (input.nextMode) control_.setMode(nextMode(control_.mode()));
+    stats_.mode = control_.mode();
     if (input.orthographic) control_.setView(withOrthographic(view, !view.orthographic));
     if (input.doubleClicked && !tools_.measure.active())
       if (const auto point = pointUnder(input.cursor)) control_.glideTo(approached(view, *point));
@@ -306,9 +372,12 @@ class ViewerApp {
       save(tools_.exportBase + ".geojson", measurementsGeoJson(kept, layers_.stores().front()->info().crs));
     if (request.saveProject) saveProject();
     drawProfile(request.showProfile);
+    const auto keepAsks = keeper_.draw(control_.view(), keeperScene());
+    if (keepAsks) control_.glideTo(*keepAsks);
+    tell();
     drawHelp(helpOpen_);
     drawError(stats_.error);
-    return changed || request.layersChanged || request.pictureChanged || request.goTo;
+    return changed || request.layersChanged || request.pictureChanged || request.goTo || keepAsks;
   }
 
   /// The window of a profile, which opens by itself for one that was just made.
@@ -342,6 +411,7 @@ class ViewerApp {
     save(file, projectJson(file, {options_.stores, shown, control_.view(), settings_.draw, tools_.clip.boxes(),
                                   settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
                                   tools_.measure.kept()}));
+    if (!keeper_.state().path.keys().empty()) keeper_.savePath(control_.view(), keeperScene());
   }
 
   const ViewerOptions options_;
@@ -364,6 +434,7 @@ class ViewerApp {
   std::vector<bool> lostShown_;           ///< by path asked for: what the project said
   ToolsState tools_;
   PointLookup lookup_;
+  Keeper keeper_;
   std::vector<glm::dvec4> planes_;  ///< of the command line
   std::size_t keptBefore_ = 0;      ///< measurements in the last frame
   bool endMeasuring_ = false;       ///< as soon as the point asked for is there
@@ -386,10 +457,9 @@ void runViewer(const ViewerOptions& asked) {
   if (!convertScans(options)) return;
   ViewerApp app(options);
   if (project) app.restore(*project);
-  if (options.screenshot.empty())
-    app.run();
-  else
-    app.screenshot(options.screenshot);
+  if (!options.screenshot.empty()) app.screenshot(options.screenshot);
+  if (!options.picture.empty()) app.picture(options.picture, options.pictureSize);
+  if (options.screenshot.empty() && options.picture.empty()) app.run();
 }
 
 }  // namespace strata

@@ -25,7 +25,9 @@ struct ViewerOptions {
   ProgressiveFlags progressive;
   int pointSize = 2;
   bool edl = true;
-  bool convert = false;    ///< scans are converted without asking
+  bool convert = false;  ///< scans are converted without asking
+  std::string picture;   ///< file; draws the scene alone in full detail and ends
+  PictureSize pictureSize{4096, 2560};
   std::string screenshot;  ///< file; draws one frame in full detail, window and all, and ends
 };
 

@@ -8,7 +8,7 @@ namespace strata {
 
 std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* argv) {
   ViewerOptions options;
-  std::string backend = "auto", size = "1280x800";
+  std::string backend = "auto", size = "1280x800", pictureSize = "4096x2560";
   bool noEdl = false;
   CLI::App app{"Flies through stores.", "strata-view"};
   app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
@@ -30,6 +30,8 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
       ->transform(CLI::AsSizeValue(false));
   app.add_flag("--no-edl", noEdl, "without eye-dome lighting");
   app.add_flag("--convert", options.convert, "convert scans that have no store beside them without asking");
+  app.add_option("--picture", options.picture, "write the scene without panels in full detail to this PNG and end");
+  app.add_option("--picture-size", pictureSize, "of that picture, up to 16384x16384 pixels")->capture_default_str();
   app.add_option("--screenshot", options.screenshot, "write one complete frame to this PNG and end");
   try {
     app.parse(argc, argv);
@@ -42,6 +44,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   options.backend = parseBackend(backend);
   checkProgressive(options.progressive, backend, options.draw);
   options.size = parseSize(size);
+  options.pictureSize = parseSize(pictureSize);
   options.colour = colourOf(options.draw);
   DrawOptions checked;
   applyDrawFlags(options.draw, checked);

@@ -7,12 +7,15 @@
 #include <imgui/backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 #include "core/error.h"
 
 namespace strata {
 namespace {
 
+constexpr float kTextHeight = 13.0f;  // pixels, on an ordinary screen
 constexpr float kClickPx = 4.0f;      // a button that goes up this near to where it went down has clicked
 constexpr double kLongestStep = 0.1;  // seconds a flight moves in one frame, however long the frame took
 
@@ -35,42 +38,64 @@ GLFWwindow* openWindow(const std::string& title, int width, int height, bool vis
   return nullptr;
 }
 
-// Dear ImGui names keys itself since 1.87 and by GLFW's numbers before.
-#if IMGUI_VERSION_NUM >= 18700
-ImGuiKey keyOf(int key) {
-  if (key >= GLFW_KEY_A && key <= GLFW_KEY_Z) return static_cast<ImGuiKey>(ImGuiKey_A + (key - GLFW_KEY_A));
-  if (key >= GLFW_KEY_0 && key <= GLFW_KEY_9) return static_cast<ImGuiKey>(ImGuiKey_0 + (key - GLFW_KEY_0));
-  if (key == GLFW_KEY_ENTER) return ImGuiKey_Enter;
-  if (key == GLFW_KEY_KP_ENTER) return ImGuiKey_KeypadEnter;
-  if (key == GLFW_KEY_BACKSPACE) return ImGuiKey_Backspace;
-  if (key == GLFW_KEY_ESCAPE) return ImGuiKey_Escape;
-  if (key == GLFW_KEY_F1) return ImGuiKey_F1;
-  if (key >= GLFW_KEY_KP_0 && key <= GLFW_KEY_KP_9)
-    return static_cast<ImGuiKey>(ImGuiKey_Keypad0 + (key - GLFW_KEY_KP_0));
-  return ImGuiKey_None;
+/// How much larger than on an ordinary screen letters should be: 2 on most of those with many pixels.
+float contentScale(GLFWwindow* window) {
+  float x = 1.0f, y = 1.0f;
+  glfwGetWindowContentScale(window, &x, &y);
+  // Where the framebuffer has more pixels than the window has units, Dear ImGui draws larger by itself.
+  int width = 0, framebufferWidth = 0;
+  glfwGetWindowSize(window, &width, nullptr);
+  glfwGetFramebufferSize(window, &framebufferWidth, nullptr);
+  const float own = width > 0 ? static_cast<float>(framebufferWidth) / static_cast<float>(width) : 1.0f;
+  return std::clamp(std::max(x, y) / std::max(own, 0.1f), 1.0f, 4.0f);
 }
-#else
-int keyOf(int key) { return key; }
-#endif
 
-bool pressed(int key) { return ImGui::IsKeyPressed(keyOf(key), false); }
-int held(int key) { return ImGui::IsKeyDown(keyOf(key)) ? 1 : 0; }
+/// What went down since the last frame, however briefly: Dear ImGui before 1.87 only knows what is down at a frame.
+struct KeyPresses {
+  struct Press {
+    int key = 0;
+    bool control = false;
+  };
+  std::vector<Press> presses;
 
-void readKeys(WindowInput& input) {
-  input.frameAll = pressed(GLFW_KEY_F);
-  input.front = pressed(GLFW_KEY_1) || pressed(GLFW_KEY_KP_1);
-  input.side = pressed(GLFW_KEY_3) || pressed(GLFW_KEY_KP_3);
-  input.top = pressed(GLFW_KEY_7) || pressed(GLFW_KEY_KP_7);
-  input.orthographic = pressed(GLFW_KEY_O);
-  input.keep = pressed(GLFW_KEY_ENTER) || pressed(GLFW_KEY_KP_ENTER);
-  input.takeBack = pressed(GLFW_KEY_BACKSPACE);
-  input.drop = pressed(GLFW_KEY_ESCAPE);
-  input.save = ImGui::GetIO().KeyCtrl && pressed(GLFW_KEY_S);
-  input.measure = pressed(GLFW_KEY_M);
-  input.profile = pressed(GLFW_KEY_X);
-  input.clipBox = pressed(GLFW_KEY_B);
-  input.help = pressed(GLFW_KEY_H) || pressed(GLFW_KEY_F1);
+  bool plain(int key) const { return has({key, false}); }
+  bool withControl(int key) const { return has({key, true}); }
+
+ private:
+  bool has(const Press& wanted) const {
+    return std::any_of(presses.begin(), presses.end(),
+                       [&](const Press& p) { return p.key == wanted.key && p.control == wanted.control; });
+  }
+};
+
+void takeKey(GLFWwindow* window, int key, int, int action, int modifiers) {
+  if (action == GLFW_PRESS)
+    static_cast<KeyPresses*>(glfwGetWindowUserPointer(window))
+        ->presses.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+}
+
+void readKeys(GLFWwindow* window, const KeyPresses& keys, WindowInput& input) {
+  input.frameAll = keys.plain(GLFW_KEY_F);
+  input.front = keys.plain(GLFW_KEY_1) || keys.plain(GLFW_KEY_KP_1);
+  input.side = keys.plain(GLFW_KEY_3) || keys.plain(GLFW_KEY_KP_3);
+  input.top = keys.plain(GLFW_KEY_7) || keys.plain(GLFW_KEY_KP_7);
+  input.orthographic = keys.plain(GLFW_KEY_O);
+  input.keep = keys.plain(GLFW_KEY_ENTER) || keys.plain(GLFW_KEY_KP_ENTER);
+  input.takeBack = keys.plain(GLFW_KEY_BACKSPACE);
+  input.drop = keys.plain(GLFW_KEY_ESCAPE);
+  input.save = keys.withControl(GLFW_KEY_S);
+  input.measure = keys.plain(GLFW_KEY_M);
+  input.profile = keys.plain(GLFW_KEY_X);
+  input.clipBox = keys.plain(GLFW_KEY_B);
+  input.help = keys.plain(GLFW_KEY_H) || keys.plain(GLFW_KEY_F1);
+  input.pictures = keys.plain(GLFW_KEY_P);
+  input.takePicture = keys.withControl(GLFW_KEY_P);
+  input.pathKey = keys.plain(GLFW_KEY_K);
+  input.record = keys.plain(GLFW_KEY_R);
+  input.play = keys.plain(GLFW_KEY_SPACE);
+  input.nextMode = keys.plain(GLFW_KEY_G);
   if (ImGui::GetIO().KeyCtrl) return;  // no flying with a shortcut
+  const auto held = [window](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1 : 0; };
   input.fly.forward = held(GLFW_KEY_W) - held(GLFW_KEY_S);
   input.fly.right = held(GLFW_KEY_D) - held(GLFW_KEY_A);
   input.fly.up = held(GLFW_KEY_E) - held(GLFW_KEY_Q);
@@ -81,6 +106,7 @@ void readKeys(WindowInput& input) {
 
 struct Window::Parts {
   GLFWwindow* window = nullptr;
+  KeyPresses keys;
 
   Parts(const std::string& title, int width, int height, bool visible) {
     if (glfwInit() != GLFW_TRUE) throw windowError();
@@ -96,6 +122,13 @@ struct Window::Parts {
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::StyleColorsDark();
     ImGui::GetStyle().WindowRounding = 6.0f;
+    const float scale = contentScale(window);
+    ImGui::GetStyle().ScaleAllSizes(scale);
+    ImFontConfig font;
+    font.SizePixels = std::round(kTextHeight * scale);
+    ImGui::GetIO().Fonts->AddFontDefault(&font);
+    glfwSetWindowUserPointer(window, &keys);
+    glfwSetKeyCallback(window, takeKey);  // before Dear ImGui's, which calls it
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330");
   }
@@ -118,6 +151,7 @@ Window::~Window() = default;
 bool Window::closed() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }
 
 WindowInput Window::beginFrame(double waitSeconds) {
+  parts_->keys.presses.clear();
   if (waitSeconds > 0.0)
     glfwWaitEventsTimeout(waitSeconds);
   else
@@ -129,6 +163,10 @@ WindowInput Window::beginFrame(double waitSeconds) {
   const ImGuiIO& io = ImGui::GetIO();
   WindowInput input;
   glfwGetFramebufferSize(parts_->window, &input.width, &input.height);
+  // X11 leaves a minimised window its size.
+  input.hidden = input.width == 0 || input.height == 0 ||
+                 glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE ||
+                 glfwGetWindowAttrib(parts_->window, GLFW_VISIBLE) == GLFW_FALSE;
   input.seconds = std::min(static_cast<double>(io.DeltaTime), kLongestStep);
   input.cursor = glm::dvec2(io.MousePos.x * io.DisplayFramebufferScale.x, io.MousePos.y * io.DisplayFramebufferScale.y);
   input.dragging = io.MouseDown[0] || io.MouseDown[1];
@@ -139,8 +177,8 @@ WindowInput Window::beginFrame(double waitSeconds) {
     input.doubleClicked = io.MouseDoubleClicked[0];
     input.clicked = io.MouseReleased[0] && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx;
   }
-  if (!io.WantCaptureKeyboard) readKeys(input);
-  if (io.KeyCtrl && pressed(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
+  if (!io.WantCaptureKeyboard) readKeys(parts_->window, parts_->keys, input);
+  if (parts_->keys.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
   return input;
 }
 

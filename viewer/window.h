@@ -25,18 +25,23 @@ struct WindowInput {
   bool orthographic = false;                      ///< O: with perspective or without
   bool clicked = false;                           ///< left button let go where it went down
   bool doubleClicked = false;
-  bool keep = false, takeBack = false, drop = false;  ///< Enter, Backspace, Escape
-  bool save = false;                                  ///< Control + S
-  bool measure = false;                               ///< M: a distance
-  bool profile = false;                               ///< X: a cross-section
-  bool clipBox = false;                               ///< B: a new clip box
-  bool help = false;                                  ///< H or F1
+  bool keep = false, takeBack = false, drop = false;   ///< Enter, Backspace, Escape
+  bool save = false;                                   ///< Control + S
+  bool measure = false;                                ///< M: a distance
+  bool profile = false;                                ///< X: a cross-section
+  bool clipBox = false;                                ///< B: a new clip box
+  bool help = false;                                   ///< H or F1
+  bool takePicture = false;                            ///< Control + P
+  bool pictures = false;                               ///< P: the window for pictures and paths
+  bool pathKey = false, record = false, play = false;  ///< K, R, space
+  bool nextMode = false;                               ///< G: the next way of moving
+  bool hidden = false;                                 ///< minimised, or not on the screen: nothing need be drawn
 
   /// Nothing that changes the picture.
   bool idle() const {
     return !dragging && !leftPressed && !rightPressed && wheel == 0.0 && fly.still() && !frameAll && !front && !side &&
-           !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure && !profile && !clipBox &&
-           !help;
+           !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure &&
+           !profile && !clipBox && !help && !pictures && !takePicture && !pathKey && !record && !play && !nextMode;
   }
 };
 
