@@ -2,6 +2,7 @@
 // whole scan. docs/effects.md has the results.
 //   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]   PSNR, SSIM, covered and wrongly filled pixels
 //   fill_quality times NAME.strata VIEWS.json [KEPT...]          milliseconds of each step
+//   fill_quality steadiness NAME.strata VIEWS.json [KEPT...]     difference of successive frames
 // VIEWS.json is a camera path, each of its keys a view. KEPT are the shares of points that remain, such as 0.25. OUT is
 // a folder; it gets fill.tsv and the pictures.
 #include <filesystem>
@@ -28,6 +29,8 @@ namespace {
 
 constexpr int kWidth = 1200, kHeight = 800;  // Farias 2014, 5.1
 constexpr int kTimedFrames = 5;
+constexpr int kSteadyFrames = 6;
+constexpr double kStepPixels = 0.6;  ///< that the target moves by from frame to frame
 
 /// Every node of a store with all that its payload holds, normals too.
 RenderList readWhole(const Store& store) {
@@ -186,6 +189,41 @@ void times(const std::string& path, const std::string& viewsFile, const std::vec
     }
 }
 
+/// How much successive frames differ along a slow path that goes by each view, see flicker().
+void steadiness(const std::string& path, const std::string& viewsFile, const std::vector<double>& kept) {
+  const Store store(path);
+  const RenderList whole = readWhole(store);
+  const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
+  const ThreadPool pool(0);
+  std::cout << "view\tkept\tway\tflicker" << std::endl;
+  const std::vector<View> views = readViews(viewsFile);
+  for (std::size_t v = 0; v < views.size(); ++v)
+    for (const double share : kept) {
+      const RenderList thin = thinned(whole, share, 1);
+      for (const Way& way : waysOf(store)) {
+        DrawOptions options;
+        options.fill = way.window;
+        View view = views[v], before;
+        const double pixel = glm::length(view.target - view.eye) / pixelsAt(view, 1.0, 1.0);
+        const glm::dvec3 step = kStepPixels * pixel * viewBasis(view).right;
+        Frame full, fullBefore, frame, frameBefore;
+        double sum = 0.0;
+        for (int i = 0; i < kSteadyFrames; ++i) {
+          rasterizer->draw(whole, view, {}, full);
+          rasterizer->draw(thin, view, options, frame);
+          if (way.flood) floodFill(thin, view, way.settings, pool, frame);
+          if (i > 0) sum += flicker(full, view, frame, fullBefore, before, frameBefore);
+          std::swap(full, fullBefore);
+          std::swap(frame, frameBefore);
+          before = view;
+          view.eye += step;
+          view.target += step;
+        }
+        std::cout << v << '\t' << share << '\t' << way.name << '\t' << sum / (kSteadyFrames - 1) << std::endl;
+      }
+    }
+}
+
 std::vector<double> shares(const std::vector<std::string>& arguments, std::size_t first) {
   std::vector<double> kept;
   for (std::size_t i = first; i < arguments.size(); ++i) kept.push_back(std::stod(arguments[i]));
@@ -198,8 +236,10 @@ int run(const std::vector<std::string>& arguments) {
     pictures(arguments[1], arguments[2], arguments[3], shares(arguments, 4));
   } else if (arguments.size() >= 3 && arguments[0] == "times") {
     times(arguments[1], arguments[2], shares(arguments, 3));
+  } else if (arguments.size() >= 3 && arguments[0] == "steadiness") {
+    steadiness(arguments[1], arguments[2], shares(arguments, 3));
   } else {
-    throw UsageError("pictures OUT STORE VIEWS or times STORE VIEWS is expected");
+    throw UsageError("pictures OUT STORE VIEWS, times STORE VIEWS or steadiness STORE VIEWS is expected");
   }
   return 0;
 }

@@ -273,6 +273,31 @@ TEST(FloodFill, MakesNothingOfSinglePoints) {
   EXPECT_EQ(drawn(apart, ahead(), false).colour, drawn(apart, ahead(), true).colour);
 }
 
+/// A scan of a town, a share of whose points is drawn while the camera goes by slowly.
+TEST(FloodFill, FlickersLessThanThePictureWithHoles) {
+  const RenderList whole = test::makeTown(kUtm, 100.0, 600000, 1, 4), thin = test::thinned(whole, 0.1, 1);
+  View view = viewOfBox(test::boundsOf(whole), {1.0, 0.8, -0.6}, 240, 180, 1.0);
+  view.eye = view.target + (view.eye - view.target) * 0.7;
+  Frame fullBefore, openBefore, filledBefore;
+  View before;
+  double open = 0.0, filled = 0.0;
+  for (int i = 0; i < 12; ++i) {
+    const Frame full = drawn(whole, view, false), holes = drawn(thin, view, false), closed = drawn(thin, view, true);
+    if (i > 0) {
+      open += test::flicker(full, view, holes, fullBefore, before, openBefore);
+      filled += test::flicker(full, view, closed, fullBefore, before, filledBefore);
+    }
+    fullBefore = full;
+    openBefore = holes;
+    filledBefore = closed;
+    before = view;
+    view.eye += glm::dvec3(0.05, -0.05, 0.01);  // about half a pixel
+    view.target += glm::dvec3(0.05, -0.05, 0.01);
+  }
+  EXPECT_GT(open / 11.0, 1.0);
+  EXPECT_LT(filled, 0.9 * open);
+}
+
 TEST(FloodFill, IsTheSameForAnyNumberOfThreads) {
   const RenderList list = test::thinned(test::makeTown(kUtm, 100.0, 60000, 1, 4), 0.5, 1);
   View view = viewOfBox(test::boundsOf(list), {1.0, 0.8, -0.6}, 320, 240, 1.0);

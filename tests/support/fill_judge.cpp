@@ -87,4 +87,31 @@ FillJudgement judgeFill(const Frame& full, const Frame& filled) {
   return judged;
 }
 
+double flicker(const Frame& full, const View& view, const Frame& frame, const Frame& fullBefore, const View& viewBefore,
+               const Frame& before) {
+  const ViewBasis basis = viewBasis(view);
+  const double perPixel = 1.0 / pixelsAt(view, 1.0, 1.0);
+  const Projection earlier = projection(viewBefore);
+  double sum = 0.0, places = 0.0;
+  for (int y = 0; y < full.height; ++y)
+    for (int x = 0; x < full.width; ++x) {
+      const auto i = static_cast<std::size_t>(y * full.width + x);
+      if (full.pointId[i] == Frame::kNoPoint) continue;
+      const double depth = static_cast<double>(full.depth[i]);
+      const double side = (x + 0.5 - 0.5 * full.width) * perPixel, up = (0.5 * full.height - y - 0.5) * perPixel;
+      const glm::dvec3 place = view.eye + depth * (basis.forward + side * basis.right + up * basis.up);
+      const glm::dvec4 d(place - earlier.eye, 1.0);
+      const double w = glm::dot(earlier.rowW, d);
+      const double u = std::floor(glm::dot(earlier.rowX, d) / w), v = std::floor(glm::dot(earlier.rowY, d) / w);
+      if (!(w > 0.0) || !(u >= 0.0 && v >= 0.0 && u < full.width && v < full.height)) continue;
+      const auto j = static_cast<std::size_t>(v) * static_cast<std::size_t>(full.width) + static_cast<std::size_t>(u);
+      if (!(static_cast<double>(fullBefore.depth[j]) > (1.0 - static_cast<double>(kSameDepth)) * w)) continue;
+      for (int shift = 0; shift < 24; shift += 8)
+        sum += std::abs(static_cast<int>(frame.colour[i] >> shift & 255u) -
+                        static_cast<int>(before.colour[j] >> shift & 255u));
+      places += 3.0;
+    }
+  return places > 0.0 ? sum / places : 0.0;
+}
+
 }  // namespace strata::test
