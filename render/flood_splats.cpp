@@ -14,6 +14,7 @@ constexpr int kStripRows = 16;
 constexpr float kOverlap = 1.0f;       ///< radius over the median distance, with neighbours all around
 constexpr float kMostSpacings = 2.5f;  ///< largest radius in spacings where the seeds are next to each other:
 constexpr float kNextPixels = 4.0f;    ///< a median distance below this says only that the picture has no more pixels
+constexpr float kRound = 1.5f;         ///< ratio of axes up to which a splat is a circle: chance makes such too
 constexpr float kMostStretch = 3.0f;   ///< of an ellipse
 constexpr float kOpenSide = 2.0f;      ///< how much shorter a splat is towards where it has no neighbours
 constexpr int kFewestNeighbours = 2;   ///< fewer are an outlier
@@ -141,7 +142,8 @@ void shape(const Around& around, float radius, bool ellipse, FloodSplat& splat) 
     angle = 0.5f * std::atan2(2.0f * uv, uu - vv);
     // The ratio of the axes is the root of that of the moments; the area stays.
     const float least = (middle + spread) / (kMostStretch * kMostStretch);
-    stretch = std::pow((middle + spread) / std::max(middle - spread, std::max(least, 1e-30f)), 0.25f);
+    const float ratio = (middle + spread) / std::max(middle - spread, std::max(least, 1e-30f));
+    if (ratio > kRound * kRound) stretch = std::pow(ratio, 0.25f);
   }
   const glm::vec3 longer = std::cos(angle) * u + std::sin(angle) * v;
   splat.radius = radius * stretch;

@@ -151,7 +151,8 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
   frame.depth.resize(count);
   frame.pointId.resize(count);
   const Colouring colouring(list, view, options, buffer);
-  const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
+  const bool onePixel = options.colour == ColourMode::overdraw || options.jumpFlood;
+  const PointSizes sizes = onePixel ? PointSizes(1) : PointSizes(options, view);
   const FillSizes fills(options, view);
   if (sizes.alwaysOne() && fills.none()) {
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {

@@ -273,6 +273,31 @@ TEST(FloodFill, MakesNothingOfSinglePoints) {
   EXPECT_EQ(drawn(apart, ahead(), false).colour, drawn(apart, ahead(), true).colour);
 }
 
+/// Lines of a scanner: points 0.12 m apart on lines that are 0.6 m apart.
+TEST(FloodFill, ClosesTheGapsBetweenScanLinesWithEllipsesRatherThanCircles) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> within(0.0, 1.0);
+  std::vector<glm::dvec3> points;
+  for (double z = -12.0; z < 12.0; z += 0.6)
+    for (double x = -12.0; x < 12.0; x += 0.12)
+      points.push_back(kUtm + glm::dvec3(x + 0.12 * within(random), 10.0, z + 0.04 * within(random)));
+  std::shuffle(points.begin(), points.end(), random);
+  auto node = std::make_shared<NodeData>(*test::makeNode(NodeKey(), points, 0.001));
+  node->spacing = 0.27f;  // of as many points spread evenly
+  const RenderList list = test::makeList({node});
+  const Frame lines = drawn(list, ahead(), false);
+  const auto open = [&](bool ellipses) {
+    FloodSettings settings;
+    settings.ellipses = ellipses;
+    Frame frame = lines;
+    floodFill(list, ahead(), settings, pool(), frame);
+    return std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint);
+  };
+  const auto circles = open(false), ellipses = open(true);
+  EXPECT_LT(ellipses, 0.02 * static_cast<double>(lines.pointId.size()));
+  EXPECT_LT(2 * ellipses, circles);
+}
+
 /// A scan of a town, a share of whose points is drawn while the camera goes by slowly.
 TEST(FloodFill, FlickersLessThanThePictureWithHoles) {
   const RenderList whole = test::makeTown(kUtm, 100.0, 600000, 1, 4), thin = test::thinned(whole, 0.1, 1);
