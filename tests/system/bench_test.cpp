@@ -252,6 +252,34 @@ TEST_F(Bench, ABrowserPrintsTheReport) {
   EXPECT_LE(pages, 12u);
 }
 
+// --- docs/benchmarks.md
+
+TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
+  const std::filesystem::path page = file("page.md");
+  std::filesystem::copy_file(STRATA_SOURCE_DIR "/docs/benchmarks.md", page);
+  const Finished done = runProgram(STRATA_SOURCE_DIR "/tests/bench/all.sh",
+                                   {"-b", std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d",
+                                    file("all").string(), "-o", page.string(), "-q", "machine", "targets"});
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  const std::string text = readWhole(page);
+  EXPECT_NE(text.find("**Machine**: "), std::string::npos);
+  EXPECT_NE(text.find("| convert LAS, largest size | not measured | 5 M points/s | 9 M points/s |"), std::string::npos);
+  for (const char* section : {"machine", "targets", "conversion", "store", "selection", "streaming", "rasterizers",
+                              "kanzok", "schuetz", "guenther", "flights", "real", "largest"}) {
+    const std::string name = section;
+    const std::size_t begin = text.find("<!-- " + name + ": tests/bench/all.sh " + name + " -->");
+    ASSERT_NE(begin, std::string::npos) << name;
+    EXPECT_NE(text.find("<!-- end of " + name + " -->", begin), std::string::npos) << name;
+  }
+  // No table stands outside of the marks.
+  bool inside = false;
+  for (const std::string& line : linesOf(text)) {
+    if (line.starts_with("<!-- ")) inside = !line.starts_with("<!-- end of ");
+    EXPECT_TRUE(inside || !line.starts_with("|")) << line;
+  }
+}
+
 // --- the papers' tables
 
 /// Every table's rows, without the header and the line under it; each must have as many cells as its header.

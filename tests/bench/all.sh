@@ -1,0 +1,162 @@
+#!/usr/bin/env bash
+# Measures all of docs/benchmarks.md and writes the tables between its marks. On two idle cores the default sizes take
+# about 20 minutes and 12 GB of disk.
+# usage: tests/bench/all.sh [-b BUILD] [-d FOLDER] [-o PAGE] [-q] [SECTION...]
+#   BUILD    folder with bin/ and tests/ (default: build/release)     FOLDER  scratch, what is in it is used again
+#            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
+#   -q       quick: everything a hundredth, only to see that it works
+#   SECTION  machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real largest
+#            targets; default: all but largest
+# Sizes, from the environment: CONVERT="10M 50M", CITY=50e6 and ROOM=20e6 (points of the stores that are flown through),
+# LARGEST=500e6, RASTER=10 (million points), SCALE=0.02 (of the papers' numbers), KANZOK_SCALE=SCALE, REPEAT=3 (flights),
+# VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through). RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
+set -euo pipefail
+root=$(cd "$(dirname "$0")/../.." && pwd)
+build=$root/build/release folder='' page=$root/docs/benchmarks.md quick=0
+while getopts b:d:o:q option; do
+  case $option in
+    b) build=$(realpath "$OPTARG") ;;
+    d) folder=$OPTARG ;;
+    o) page=$OPTARG ;;
+    q) quick=1 ;;
+    *) exit 2 ;;
+  esac
+done
+shift $((OPTIND - 1))
+sections=("$@")
+[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real targets)
+if [ $quick = 1 ]; then
+  : "${CONVERT:=100k}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
+fi
+: "${CONVERT:=10M 50M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
+: "${KANZOK_SCALE:=$SCALE}" "${RED_ROCKS:=$root/../shared/data/laz/large/red_rocks_4.0M.laz}"
+export PATH=$build/bin:$build/tests:$PATH
+if [ -z "$folder" ]; then
+  folder=$(mktemp -d)
+  trap 'rm -rf "$folder"' EXIT
+fi
+mkdir -p "$folder/sections"
+folder=$(realpath "$folder")
+
+note() { printf '%s %s\n' "$(date +%T)" "$*" >&2; }
+table() { python3 "$root/tests/bench/tables.py" "$@"; }
+# made_store NAME INPUT OPTIONS...: FOLDER/NAME.strata, made where it is not there
+made_store() {
+  [ -e "$folder/$1.strata/store.json" ] || strata-convert "$2" -o "$folder/$1.strata" --json "${@:3}" >/dev/null 2>&1
+}
+path_of() { strata-bench --make-path "$2" "$folder/$1.strata" >"$folder/$1_$2.json"; }
+# first_seconds FROM TO SECONDS: the path FROM, cut off after so long
+first_seconds() {
+  python3 -c 'import json, sys
+path = json.load(open(sys.argv[1]))
+whole = path["keys"][-1]["t"] - path["keys"][0]["t"]
+for key in path["keys"]: key["t"] *= min(1.0, float(sys.argv[3]) / whole)
+json.dump(path, open(sys.argv[2], "w"))' "$1" "$2" "$3"
+}
+# fly STORE PATH OUT OPTIONS...
+fly() { strata-bench "$folder/$1.strata" --path "$2" -o "$folder/$3" --backend cpu --json "${@:4}" >/dev/null 2>&1; }
+
+machine() { table machine "$folder" "$root"; }
+conversion() { # shellcheck disable=SC2086
+  "$root/tests/bench/convert.sh" -b "$build" $CONVERT
+}
+store() {
+  made_store store_city "synthetic:city?points=10e6&seed=1"
+  strata-export "$folder/store_city.strata" -o "$folder/store_city.las" --format 2 --force >/dev/null
+  made_store las_city "$folder/store_city.las"
+  rm -rf "$folder/store_city.las" "$folder/store_city.strata"
+  local infos=("city of 10 M points, LAS format 2" "$folder/las_city.strata")
+  if [ -e "$RED_ROCKS" ]; then
+    made_store red_rocks "$RED_ROCKS"
+    infos+=(red_rocks "$folder/red_rocks.strata")
+  fi
+  for ((i = 1; i < ${#infos[@]}; i += 2)); do strata-info "${infos[i]}" --json >"$folder/info_$i.json"; infos[i]=$folder/info_$i.json; done
+  table planes "${infos[@]}"
+}
+selection() { selection_bench --benchmark_format=json 2>/dev/null | table benchmark nodes Mpoints tested; }
+streaming() {
+  made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
+  made_store flown "synthetic:room?points=$FLOWN&seed=1" --node-points 16384
+  path_of flown flythrough
+  first_seconds "$folder/flown_flythrough.json" "$folder/flown.json" 6
+  # shellcheck disable=SC2016
+  printf 'Indoors, with and without the occlusion test (`indoors`):\n\n'
+  streaming_bench indoors "$folder/room.strata" "$VIEWS"
+  for what in slow ahead planes; do
+    # shellcheck disable=SC2016
+    case $what in
+      slow) printf '\nOne flight over disks that are instant, slow and broken (`slow`):\n\n' ;;
+      ahead) printf '\nWith and without looking ahead (`ahead`):\n\n' ;;
+      planes) printf '\nPlanes by need and all at once (`planes`):\n\n' ;;
+    esac
+    streaming_bench $what "$folder/flown.strata" "$folder/flown.json"
+  done
+  # shellcheck disable=SC2016
+  printf '\nThe loaders against plain reading, page cache warm (`loaders`):\n\n'
+  streaming_bench loaders "$folder/room.strata"
+  # shellcheck disable=SC2016
+  printf '\nOpening a store (`open`):\n\n'
+  streaming_bench open "$NODES"
+}
+rasterizers() {
+  STRATA_BENCH_POINTS=$RASTER rasterizer_bench --benchmark_format=json --benchmark_min_time=0.3 2>/dev/null |
+    table benchmark Mpoints/s
+}
+suite() { strata-bench --suite "$1" --suite-scale "$2" 2>/dev/null; }
+kanzok() { suite kanzok "$KANZOK_SCALE"; }
+schuetz() { suite schuetz "$SCALE"; }
+guenther() { suite guenther "$SCALE"; }
+flights() {
+  made_store city "synthetic:city?points=$CITY&seed=1"
+  local runs=()
+  for kind in orbit flythrough street dive; do
+    path_of city $kind
+    fly city "$folder/city_$kind.json" "flight_$kind" --repeat "$REPEAT"
+    runs+=("$kind" "$folder/flight_$kind")
+  done
+  fly city "$folder/city_flythrough.json" flight_cold --repeat "$REPEAT" --cold
+  fly city "$folder/city_flythrough.json" flight_again --repeat "$REPEAT"
+  table flights "${runs[@]}" "flythrough, cold" "$folder/flight_cold" "flythrough, again" "$folder/flight_again"
+  # shellcheck disable=SC2016
+  printf '\nThe same build twice, `strata-bench compare`:\n\n```\n'
+  strata-bench compare "$folder/flight_flythrough" "$folder/flight_again" --fail-above 5% || true
+  # shellcheck disable=SC2016
+  printf '```\n'
+}
+# described NAME STORE: four flights, stills and report of one store
+described() {
+  local runs=()
+  for kind in orbit flythrough; do
+    path_of "$2" $kind
+    fly "$2" "$folder/$2_$kind.json" "$2_$kind" --repeat "$REPEAT" --cold --stills --screenshot-every 60
+    runs+=("$kind, cold" "$folder/$2_$kind")
+  done
+  table store "$1" "$folder/$2_orbit"
+  table flights "${runs[@]}"
+}
+real() {
+  if [ ! -e "$RED_ROCKS" ]; then
+    echo "Not measured: $RED_ROCKS is not there."
+    return
+  fi
+  made_store red_rocks "$RED_ROCKS"
+  described "Red Rocks, a canyon from the air" red_rocks
+}
+largest() {
+  if [ ! -e "$folder/largest.strata/store.json" ]; then
+    strata-convert "synthetic:city?points=$LARGEST&seed=1" -o "$folder/largest.strata" --resume --json 2>/dev/null |
+      tail -n 1 >"$folder/largest.json"
+  fi
+  [ ! -s "$folder/largest.json" ] || table conversion "$folder/largest.json"
+  described "The largest city" largest
+}
+targets() { table targets "$folder/sections"; }
+
+for section in "${sections[@]}"; do
+  note "$section"
+  start=$SECONDS
+  "$section" >"$folder/sections/$section.part"
+  mv "$folder/sections/$section.part" "$folder/sections/$section.md"
+  table put "$page" "$section" "$folder/sections/$section.md"
+  note "$section took $((SECONDS - start)) s"
+done
