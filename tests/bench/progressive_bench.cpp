@@ -132,46 +132,52 @@ void savePicture(const Scale& scale, const std::string& name, const Frame& frame
 void convergenceTable(const Scale& scale, const Scene& scene) {
   Frame wanted, frame;
   {
-    const auto plain = createRasterizer(Backend::cpu, {}, nullptr);
+    RasterizerOptions room;
+    room.uploadBytesPerFrame = kNoLimit;
+    const auto plain = createRasterizer(Backend::compute32, room, createHeadlessContext());
     plain->draw(scene.list, scene.view, {}, wanted);
     savePicture(scale, "final", wanted);
   }
   std::printf("\n## Frames until pixels are final, of %.1f M points, and its turn\n\n",
               millions(scene.list.pointCount));
   std::printf("| pool | shuffle | a frame | turn | 90 %% | 99 %% | 100 %% |\n|---|---|---|---|---|---|---|\n");
-  const std::uint64_t pools[] = {scene.list.pointCount * 11 / 10, scene.list.pointCount * 22 / 10};
-  for (const std::uint64_t pool : pools)
-    for (const Shuffle shuffle : {Shuffle::keyed, Shuffle::perfect}) {
-      if (shuffle == Shuffle::perfect && pool != pools[0]) continue;
-      const auto rasterizer = progressive(kNoLimit, pool, shuffle);
-      for (const int share : {5, 10, 20, 40}) {
-        fillPool(*rasterizer, scene.list, scene.view);
-        rasterizer->draw(scene.list, scene.away, {}, frame);
-        const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
-        rasterizer->setOptions({n, kNoLimit});
-        int reached[3] = {0, 0, 0};
-        for (int count = 1; reached[2] == 0 && count < 1000; ++count) {
-          rasterizer->draw(scene.list, scene.view, {}, frame);
-          std::size_t same = 0, all = 0;
-          for (std::size_t i = 0; i < wanted.pointId.size(); ++i) {
-            const bool covered = wanted.pointId[i] != Frame::kNoPoint;
-            all += covered;
-            same += covered && wanted.pointId[i] == frame.pointId[i];
-          }
-          const double part = static_cast<double>(same) / static_cast<double>(all);
-          for (const int k : {0, 1, 2})
-            if (reached[k] == 0 && part >= (k == 0 ? 0.9 : k == 1 ? 0.99 : 1.0)) reached[k] = count;
-          if (share == 20 && pool == pools[0] && (count == 2 || count == 8))
-            savePicture(scale, std::string(shuffle == Shuffle::keyed ? "keyed" : "perfect") + std::to_string(count),
-                        frame);
+  struct Way {
+    std::uint64_t pool;
+    Shuffle shuffle;
+  };
+  const std::uint64_t least = scene.list.pointCount * 11 / 10, square = std::bit_ceil(least);
+  for (const Way& way : {Way{least, Shuffle::keyed}, Way{2 * least, Shuffle::keyed}, Way{square, Shuffle::keyed},
+                         Way{square, Shuffle::perfect}}) {
+    const auto rasterizer = progressive(kNoLimit, way.pool, way.shuffle);
+    for (const int share : {5, 10, 20, 40}) {
+      fillPool(*rasterizer, scene.list, scene.view);
+      rasterizer->draw(scene.list, scene.away, {}, frame);
+      const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
+      rasterizer->setOptions({n, kNoLimit});
+      int reached[3] = {0, 0, 0};
+      bool finished = false;
+      for (int count = 1; !finished; ++count) {
+        finished = isFinished(rasterizer->draw(scene.list, scene.view, {}, frame));
+        std::size_t same = 0, all = 0;
+        for (std::size_t i = 0; i < wanted.pointId.size(); ++i) {
+          const bool covered = wanted.pointId[i] != Frame::kNoPoint;
+          all += covered;
+          same += covered && wanted.pointId[i] == frame.pointId[i];
         }
-        std::printf("| %.1f M | %s | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
-                    shuffle == Shuffle::keyed ? "keyed" : "perfect", millions(n),
-                    static_cast<double>(rasterizer->progress().poolPoints) / static_cast<double>(n), reached[0],
-                    reached[1], reached[2]);
-        std::fflush(stdout);
+        const double part = static_cast<double>(same) / static_cast<double>(all);
+        for (const int k : {0, 1, 2})
+          if (reached[k] == 0 && part >= (k == 0 ? 0.9 : k == 1 ? 0.99 : 1.0)) reached[k] = count;
+        if (share == 20 && way.pool == square && (count == 2 || count == 8))
+          savePicture(scale, std::string(way.shuffle == Shuffle::keyed ? "keyed" : "perfect") + std::to_string(count),
+                      frame);
       }
+      std::printf("| %.1f M | %s | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
+                  way.shuffle == Shuffle::keyed ? "keyed" : "perfect", millions(n),
+                  static_cast<double>(rasterizer->progress().poolPoints) / static_cast<double>(n), reached[0],
+                  reached[1], reached[2]);
+      std::fflush(stdout);
     }
+  }
 }
 
 /// Figure 4.1 and Table 4.2: the passes over the number of new points.

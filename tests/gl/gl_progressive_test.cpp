@@ -1,9 +1,11 @@
 // Progressive drawing against the plain rasterizer, which draws every point in every frame.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <map>
 #include <random>
 
+#include "core/image.h"
 #include "render/progressive_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/synthetic_nodes.h"
@@ -136,6 +138,24 @@ TEST_F(Progressive, KeepsToPrefixesClipClassesAndColours) {
 /// Each frame's picture of a moving camera: a point that all frames of a turn had in front is shown, and what the frame
 /// before showed and what is drawn in this frame is shown at once. So what is late is late by a turn at most, and of
 /// what came into view k frames ago at most the places that k frames have not gone over.
+/// After half a turn. STRATA_ACCEPT_GOLDEN=1 replaces the picture in the repository; look at it before you commit.
+TEST_F(Progressive, ShowsAnEvenHalfAfterHalfATurn) {
+  STRATA_CREATE({100'000, 1'000'000, 200'000});
+  const RenderList list = test::makeTown(kUtm, 100.0, 150'000, 1, 4);
+  const View view = viewOfBox(test::boundsOf(list), kDirection, 320, 240, 1.0);
+  progressive_->draw(list, view, {}, frame_);
+  const Image half{frame_.width, frame_.height, frame_.colour};
+  const std::string path = std::string(STRATA_SOURCE_DIR) + "/tests/golden/town_progressive_half.png";
+  if (std::getenv("STRATA_ACCEPT_GOLDEN") != nullptr) writePng(path, half);
+  const Image golden = readPng(path);
+  ASSERT_EQ(half.pixels.size(), golden.pixels.size());
+  std::size_t different = 0;
+  for (std::size_t i = 0; i < half.pixels.size(); ++i) different += half.pixels[i] != golden.pixels[i];
+  EXPECT_LE(different, half.pixels.size() / 500) << "points on the edge of their pixel fall to either side";
+  converge(list, view);
+  expectPlainPicture(list, view);
+}
+
 TEST_F(Progressive, OfAMovingCameraIsLateByNoMoreThanTheFramesShares) {
   constexpr int kTurn = 8;
   STRATA_CREATE({25'000, 1'000'000, 25'000 * kTurn});
