@@ -14,8 +14,8 @@
 namespace strata {
 namespace {
 
-enum Pass { kDepth = 0, kIndex = 1, kKeep = 2 };  // of progressive.comp
-constexpr std::uint32_t kPointsOfThread = 32;     // likewise
+enum Pass : std::size_t { kDepth = 0, kIndex = 1, kKeep = 2, kPasses = 3 };  // STRATA_PASS of progressive.comp
+constexpr std::uint32_t kPointsOfThread = 32;                                // likewise
 
 std::unique_ptr<GlContext> currentOrThrow(std::unique_ptr<GlContext> context) {
   if (context == nullptr) throw Error("OpenGL", "progressive drawing needs a context, found none");
@@ -70,9 +70,8 @@ class Progressive final : public ProgressiveRasterizer {
         device_(glRenderer(gl_)),
         software_(isSoftwareRenderer(device_)),
         groupSize_(software_ ? 8 : 128),
-        passes_(gl_, {{gl::kComputeShader,
-                       {"shader_types.h", "batch.glsl", "progressive.comp"},
-                       define("STRATA_GROUP_SIZE", std::to_string(groupSize_))}}),
+        passes_{programs(0, false), programs(1, false), programs(2, false),
+                programs(0, true),  programs(1, true),  programs(2, true)},
         points_(gl_, options.poolPoints, options.shuffle, options.key, groupSize_, threads_),
         gridBuffer_(gl_, 0, gl::kStreamDraw),
         depths_(gl_, 0, gl::kDynamicCopy),
@@ -81,7 +80,7 @@ class Progressive final : public ProgressiveRasterizer {
         kept_{{{gl_, 0, gl::kDynamicCopy}, {gl_, 0, gl::kDynamicCopy}}},
         stamps_{GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_),
                 GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_)} {
-    passes_.get({});  // now, so that a driver that cannot is found out when the rasterizer is made
+    passes_[kDepth].get({});  // now, so that a driver that cannot is found out when the rasterizer is made
     long long bytes = 0;
     gl_.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
     mostPixels_ = static_cast<std::uint64_t>(std::max(bytes, 0LL)) / sizeof(glm::uvec4);
@@ -180,7 +179,6 @@ class Progressive final : public ProgressiveRasterizer {
 
   void drawOnGpu(const DrawOptions& options, bool rewritten, DrawStats& stats) {
     const ShaderVariant variant{1, !options.clip.empty(), !options.classes.all()};
-    const GlProgram& program = passes_.get(variant);
     const auto pixels = static_cast<std::uint32_t>(pixels_);
     stats_.filled = std::min(options_.pointsPerFrame, pending_);
     const std::vector<Range> ranges = nextRanges(stats_.filled);
@@ -195,8 +193,7 @@ class Progressive final : public ProgressiveRasterizer {
     ids_.fill(Frame::kNoPoint);
     kept_[1 - source_].fill(STRATA_NO_POINT);
     if (rewritten) points_.fetchAgain(kept_[source_], pixels);
-    program.use();
-    setUniforms(options);
+    uploadGrids();
     points_.bindPieces(STRATA_BINDING_PIECES);
     kept_[1 - source_].bindStorage(STRATA_BINDING_KEPT);
     gridBuffer_.bindStorage(STRATA_BINDING_GRIDS);
@@ -204,8 +201,9 @@ class Progressive final : public ProgressiveRasterizer {
     ids_.bindStorage(STRATA_BINDING_ID);
     candidates_.bindStorage(STRATA_BINDING_MORE);
     for (const Pass pass : {kDepth, kIndex, kKeep}) {
-      mark(static_cast<std::size_t>(pass == kDepth ? 1 : pass + 2));
-      gl_.Uniform1i(STRATA_UNIFORM_PASS, pass);
+      mark(pass == kDepth ? 1 : pass + 2);
+      passes_[pass + (plan_.grids.size() == 1 ? kPasses : kDepth)].get(variant).use();
+      setUniforms(options);
       kept_[source_].bindStorage(STRATA_BINDING_POINTS);
       std::uint32_t word = dispatch({0, 0, pixels}, 0);
       if (pass == kDepth) mark(2);
@@ -236,11 +234,28 @@ class Progressive final : public ProgressiveRasterizer {
     lapMs_[stamp] = lap_.lapMs();
   }
 
-  void setUniforms(const DrawOptions& options) {
+  /// One pass, for any grids or for one alone.
+  ProgramCache programs(int pass, bool oneGrid) const {
+    return {gl_,
+            {{gl::kComputeShader,
+              {"shader_types.h", "batch.glsl", "progressive.comp"},
+              define("STRATA_GROUP_SIZE", std::to_string(groupSize_)) + define("STRATA_PASS", std::to_string(pass)) +
+                  define("STRATA_ONE_GRID", oneGrid ? "1" : "0")}}};
+  }
+
+  void uploadGrids() {
     std::vector<shader::GridRecord> grids;
     for (const GridTransform& grid : plan_.grids) grids.push_back(gridRecord(grid));
     if (grids.empty()) grids.emplace_back();
     gridBuffer_.assign(grids.data(), grids.size() * sizeof(shader::GridRecord));
+  }
+
+  /// Of the program in use.
+  void setUniforms(const DrawOptions& options) const {
+    if (plan_.grids.size() == 1) {
+      const glm::vec4 rows[3] = {plan_.grids[0].x, plan_.grids[0].y, plan_.grids[0].depth};
+      gl_.Uniform4fv(STRATA_UNIFORM_GRID, 3, &rows[0].x);
+    }
     const Viewport port = viewport(plan_.constants);
     const glm::vec4 size(port.halfWidth, port.halfHeight, port.width, port.height);
     const glm::vec4 lens(port.nearDepth, port.perspective ? 1.0f : 0.0f, port.left, port.top);
@@ -307,7 +322,7 @@ class Progressive final : public ProgressiveRasterizer {
   std::string device_;
   const bool software_;
   const std::uint32_t groupSize_;
-  ProgramCache passes_;
+  std::array<ProgramCache, 2 * kPasses> passes_;  ///< for any grids, then for one
   PointPool points_;
   GlBuffer gridBuffer_, depths_, ids_, candidates_;
   std::array<GlBuffer, 2> kept_;  ///< the points that the pixels show: of the last frame, of this one

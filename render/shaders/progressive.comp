@@ -10,19 +10,27 @@ layout(std430, binding = STRATA_BINDING_DEPTH) buffer Depths { uint depths[]; };
 layout(std430, binding = STRATA_BINDING_ID) buffer Ids { uint ids[]; };
 layout(std430, binding = STRATA_BINDING_MORE) buffer Candidates { uint candidates[]; };
 
-layout(location = STRATA_UNIFORM_PASS) uniform int pass;
 layout(location = STRATA_UNIFORM_RANGE) uniform uvec3 range;
+#if STRATA_ONE_GRID
+layout(location = STRATA_UNIFORM_GRID) uniform vec4 gridRows[3];  // a store has one; loads cost more than arithmetic
+#endif
 
-const int kDepth = 0, kIndex = 1, kKeep = 2;
+const int pass = STRATA_PASS, kDepth = 0, kIndex = 1, kKeep = 2;
 const uint kPoints = 32u;  // of a thread, whose bits are one word
 
 Seen seenBy(PoolPiece piece) {
   uint grid = piece.flags >> STRATA_PIECE_GRID;
   ivec3 shift = ivec3(uvec3(piece.shifts, piece.shifts >> 8, piece.shifts >> 16) & 255u) - 128;
   Seen seen;
+#if STRATA_ONE_GRID
+  seen.x = gridRows[0];
+  seen.y = gridRows[1];
+  seen.depth = gridRows[2];
+#else
   seen.x = grids[grid].x;
   seen.y = grids[grid].y;
   seen.depth = grids[grid].depth;
+#endif
   seen.offset = piece.offset.xyz;
   seen.left = uvec3(max(shift, ivec3(0)));
   seen.right = uvec3(max(-shift, ivec3(0)));

@@ -53,6 +53,7 @@ using uvec4 = glm::uvec4;
 #define STRATA_UNIFORM_FORCED 25        // planning, experiments: planes to read, and nothing is culled; 0: neither
 #define STRATA_UNIFORM_RANGE 26         // progressive: first point, end, first word of candidates
 #define STRATA_UNIFORM_PAGE_POINTS 27   // filling the pool: points a page
+#define STRATA_UNIFORM_GRID 28          // progressive: rows of the only grid
 
 #define STRATA_ATTRIBUTE_RECORD 0
 

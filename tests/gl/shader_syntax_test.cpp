@@ -57,7 +57,11 @@ TEST_F(ShaderSyntax, OfTheComputeShadersIsSound) {
 
 TEST_F(ShaderSyntax, OfProgressiveDrawingIsSound) {
   forEachVariant([](const std::string& defines) {
-    EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "batch.glsl", "progressive.comp"}), "");
+    for (const char* pass : {"0", "1", "2"})
+      for (const char* oneGrid : {"0", "1"})
+        EXPECT_EQ(errorsOf("comp", 430, defines + define("STRATA_PASS", pass) + define("STRATA_ONE_GRID", oneGrid),
+                           {"shader_types.h", "batch.glsl", "progressive.comp"}),
+                  "");
     for (const std::string_view file : {"pool_insert.comp", "pool_fetch.comp"})
       EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "pool.glsl", file}), "");
   });
