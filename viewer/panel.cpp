@@ -26,16 +26,16 @@ constexpr const char* kBackendNames[] = {"auto", "cpu", "compute32", "compute64"
 
 /// Two sliders from `least` to `most` and a button that brings `automatic` back.
 template <typename Range>
-bool drawRange(Range& range, const Range& limits, const Range& automatic, const char* format) {
+bool drawRange(Range& range, const Range& limits, const Range& automatic, const char* format, ImGuiSliderFlags flags) {
   float low = static_cast<float>(range.x), high = static_cast<float>(range.y);
   const float least = static_cast<float>(limits.x), most = static_cast<float>(limits.y);
   using Number = decltype(range.x);
   bool changed = false;
-  if (ImGui::SliderFloat("from", &low, least, most, format)) {
+  if (ImGui::SliderFloat("from", &low, least, most, format, flags)) {
     range.x = static_cast<Number>(low);
     changed = true;
   }
-  if (ImGui::SliderFloat("to", &high, least, most, format)) {
+  if (ImGui::SliderFloat("to", &high, least, most, format, flags)) {
     range.y = static_cast<Number>(high);
     changed = true;
   }
@@ -80,9 +80,13 @@ bool drawColour(DrawOptions& draw, const ColourLimits& limits) {
     changed = true;
   }
   if (draw.colour == ColourMode::intensity)
-    changed = drawRange(draw.intensityRange, limits.intensity, limits.automatic.intensityRange, "%.0f") || changed;
+    changed = drawRange(draw.intensityRange, limits.intensity, limits.automatic.intensityRange, "%.0f",
+                        ImGuiSliderFlags_Logarithmic) ||
+              changed;
   if (draw.colour == ColourMode::elevation)
-    changed = drawRange(draw.elevationRange, limits.elevation, limits.automatic.elevationRange, "%.2f m") || changed;
+    changed = drawRange(draw.elevationRange, limits.elevation, limits.automatic.elevationRange, "%.2f m",
+                        ImGuiSliderFlags_None) ||
+              changed;
   drawLegend(legendOf(draw, limits.classes, limits.levels));
   return changed;
 }

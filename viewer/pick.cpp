@@ -89,8 +89,10 @@ PickedPoint lookUpPoint(const Store& store, NodeKey node, std::uint32_t point, c
     nearest = distance;
     picked = {};
     picked.position = position;
-    for (int axis = 0; axis < 3; ++axis)
-      picked.coordinates += (axis == 0 ? "" : " ") + gridNumber(position[axis], info.grid.scale[axis]);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (axis > 0) picked.coordinates.push_back(' ');
+      picked.coordinates += gridNumber(position[axis], info.grid.scale[axis]);
+    }
     const std::byte* record = points.attributes.data() + point * info.layout.stride();
     const std::vector<Attribute>& attributes = info.layout.attributes();
     for (std::size_t a = 0; a < attributes.size(); ++a)

@@ -31,8 +31,9 @@ enum class Answer { open, convert, leave };
 Answer drawQuestion(Window& window, const std::string& scan, const std::string& store, const std::string& said,
                     double seconds) {
   Answer answer = Answer::open;
-  window.beginFrame(kPoll);
+  const WindowInput input = window.beginFrame(kPoll);
   const ImVec2 size = ImGui::GetIO().DisplaySize;
+  ImGui::GetBackgroundDrawList()->AddRectFilled(ImVec2(0.0f, 0.0f), size, IM_COL32(24, 26, 30, 255));
   ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
   ImGui::SetNextWindowSizeConstraints(ImVec2(420.0f, 0.0f), ImVec2(0.9f * size.x, size.y));
   if (ImGui::Begin("Strata", nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse)) {
@@ -40,7 +41,7 @@ Answer drawQuestion(Window& window, const std::string& scan, const std::string& 
     if (seconds < 0.0) {
       ImGui::TextUnformatted("To fly through it, it is converted once to a store:");
       ImGui::TextDisabled("%s", store.c_str());
-      if (ImGui::Button("convert") || ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter))) answer = Answer::convert;
+      if (ImGui::Button("convert") || input.keep) answer = Answer::convert;
       ImGui::SameLine();
       if (ImGui::Button("quit")) answer = Answer::leave;
     } else {
