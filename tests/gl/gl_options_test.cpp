@@ -116,6 +116,16 @@ TEST_P(GlOptions, BlendPointsNearTheFront) {
   }
 }
 
+/// Filling is shared; one point in another pixel changes the splats around it.
+TEST_P(GlOptions, FillHolesByJumpFlooding) {
+  STRATA_CREATE_OR_SKIP();
+  View view = view_;
+  view.eye = view.target + (view.eye - view.target) * 0.4;
+  DrawOptions options;
+  options.jumpFlood = true;
+  expectTheCpusPicture(view, options, 0.01);
+}
+
 TEST_P(GlOptions, LeaveOutNodesBelowTheGazesThreshold) {
   STRATA_CREATE_OR_SKIP();
   DrawOptions options;
