@@ -33,11 +33,11 @@ bool drawBox(ClipBox& box, bool& remove) {
   ImGui::SameLine();
   char name[64];
   std::snprintf(name, sizeof name, "%s", box.name.c_str());
-  ImGui::SetNextItemWidth(90.0f);
+  ImGui::SetNextItemWidth(90.0f * uiScale());
   if (ImGui::InputText("##name", name, sizeof name)) box.name = name;
   ImGui::SameLine();
   int mode = box.cutout ? 1 : 0;
-  ImGui::SetNextItemWidth(120.0f);
+  ImGui::SetNextItemWidth(120.0f * uiScale());
   if (ImGui::Combo("##mode", &mode, "show inside\0show outside\0")) {
     box.cutout = mode == 1;
     changed = true;
@@ -45,7 +45,7 @@ bool drawBox(ClipBox& box, bool& remove) {
   ImGui::SameLine();
   remove = ImGui::SmallButton("x");
   const double step = kDragStep * std::max({box.box.size().x, box.box.size().y, box.box.size().z});
-  ImGui::PushItemWidth(250.0f);
+  ImGui::PushItemWidth(250.0f * uiScale());
   Box next = box.box;
   if (drawCorner("from", next.min, step) | drawCorner("to", next.max, step)) {
     box.box.min = glm::min(next.min, next.max);
@@ -102,11 +102,12 @@ bool drawClassSection(const std::bitset<256>& present, std::bitset<256>& shown) 
     ImGui::SameLine();
     const std::uint32_t colour = classificationColour(static_cast<std::uint8_t>(c));
     ImGui::ColorButton("##colour", ImGui::ColorConvertU32ToFloat4(colour),
-                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, ImVec2(14.0f, 14.0f));
+                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
+                       ImVec2(14.0f * uiScale(), 14.0f * uiScale()));
     ImGui::SameLine();
     ImGui::Text("%zu %s", c, className(static_cast<std::uint8_t>(c)).c_str());
     ImGui::SameLine();
-    ImGui::SetCursorPosX(240.0f);
+    ImGui::SetCursorPosX(240.0f * uiScale());
     if (ImGui::SmallButton("only")) {
       shown.reset();
       shown.set(c);

@@ -26,7 +26,7 @@ void InsidePanel::drawSection(std::size_t nodesDrawn) {
           std::pair{ContourClass::volumetric, "volumetric"}}) {
       NodeRecord record{};
       record.contourClass = static_cast<std::uint8_t>(kind);
-      ImGui::SameLine(kind == ContourClass::linear ? 28.0f : 0.0f);
+      ImGui::SameLine(kind == ContourClass::linear ? 28.0f * uiScale() : 0.0f);
       if (kind == ContourClass::linear) ImGui::NewLine();
       ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(contourColour(record)), "%s", name);
     }
@@ -73,7 +73,7 @@ void InsidePanel::drawDepth(const Layers& layers) {
                           ImVec2(0.5f, 0.0f));
   if (ImGui::Begin("Coarse depth", &depth_, ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(screen_.texture())),
-                 ImVec2(kDepthSide, kDepthSide));
+                 ImVec2(kDepthSide * uiScale(), kDepthSide * uiScale()));
     ImGui::TextDisabled("bright is near; what is dark hides nothing");
   }
   ImGui::End();

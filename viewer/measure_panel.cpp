@@ -11,7 +11,8 @@
 namespace strata {
 namespace {
 
-constexpr float kWidth = 300.0f;  // pixels
+float panelWidth() { return 300.0f * uiScale(); }
+
 constexpr float kMargin = 12.0f;
 constexpr std::uint32_t kLine = 0xff00c4ffu;
 constexpr std::uint32_t kCurrent = 0xffffc840u;
@@ -32,7 +33,7 @@ void drawPicked(const ToolsState& state) {
   if (ImGui::SmallButton("copy coordinates")) ImGui::SetClipboardText(state.picked->coordinates.c_str());
   for (const auto& [name, value] : state.picked->facts) {
     ImGui::TextDisabled("%s", name.c_str());
-    ImGui::SameLine(0.42f * kWidth);
+    ImGui::SameLine(0.42f * panelWidth());
     ImGui::TextWrapped("%s", value.c_str());
   }
 }
@@ -43,7 +44,7 @@ bool drawMeasurementLine(Measurement& m, bool& show) {
   ImGui::SameLine();
   char name[64];
   std::snprintf(name, sizeof name, "%s", m.name.c_str());
-  ImGui::SetNextItemWidth(0.42f * kWidth);
+  ImGui::SetNextItemWidth(0.42f * panelWidth());
   if (ImGui::InputText("##name", name, sizeof name)) m.name = name;
   ImGui::SameLine();
   if (m.kind == MeasureKind::profile) {
@@ -51,11 +52,11 @@ bool drawMeasurementLine(Measurement& m, bool& show) {
     ImGui::SameLine();
   }
   if (ImGui::SmallButton("copy")) ImGui::SetClipboardText((m.name + ": " + measureText(m)).c_str());
-  ImGui::SameLine(kWidth - 34.0f);
+  ImGui::SameLine(panelWidth() - 34.0f * uiScale());
   const bool dropped = ImGui::SmallButton("x");
-  ImGui::Indent(28.0f);
+  ImGui::Indent(28.0f * uiScale());
   ImGui::TextUnformatted(measureText(m).c_str());
-  ImGui::Unindent(28.0f);
+  ImGui::Unindent(28.0f * uiScale());
   return dropped;
 }
 
@@ -106,9 +107,9 @@ void drawBookmarks(ToolsState& state, ToolsRequest& request) {
     ImGui::SameLine();
     char name[64];
     std::snprintf(name, sizeof name, "%s", state.bookmarks[i].name.c_str());
-    ImGui::SetNextItemWidth(0.6f * kWidth);
+    ImGui::SetNextItemWidth(0.6f * panelWidth());
     if (ImGui::InputText("##name", name, sizeof name)) state.bookmarks[i].name = name;
-    ImGui::SameLine(kWidth - 34.0f);
+    ImGui::SameLine(panelWidth() - 34.0f * uiScale());
     const bool dropped = ImGui::SmallButton("x");
     ImGui::PopID();
     if (dropped)
@@ -151,7 +152,7 @@ ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& boun
   const float right = static_cast<float>(view.width) / ImGui::GetIO().DisplayFramebufferScale.x;
   ImGui::SetNextWindowPos(ImVec2(right - kMargin, kMargin), ImGuiCond_Appearing,
                           ImVec2(1.0f, 0.0f));  // its right upper corner
-  const float outer = kWidth + 2.0f * kMargin;
+  const float outer = panelWidth() + 2.0f * kMargin;
   ImGui::SetNextWindowSizeConstraints(ImVec2(outer, 0.0f),
                                       ImVec2(outer, ImGui::GetIO().DisplaySize.y - 2.0f * kMargin));
   ImGui::SetNextWindowBgAlpha(0.82f);

@@ -9,6 +9,7 @@ namespace {
 
 constexpr float kTextGap = 12.0f;  // pixels between a text and its place
 constexpr float kRim = 2.0f;
+constexpr float kOrdinaryLetters = 13.0f;  // pixels high
 
 ImVec2 at(const glm::dvec2& pixel) {
   const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
@@ -18,6 +19,8 @@ ImVec2 at(const glm::dvec2& pixel) {
 bool isBefore(const View& view, const glm::dvec3& place) { return depthOf(view, place) > view.nearPlane; }
 
 }  // namespace
+
+float uiScale() { return ImGui::GetFontSize() / kOrdinaryLetters; }
 
 void overlayLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour, float widthPx) {
   if (const auto segment = segmentOnScreen(view, a, b))

@@ -11,6 +11,9 @@ namespace strata {
 // Lines, dots and texts over the picture and below the panels, at places of the scan; between Window::beginFrame() and
 // finishFrame(). Colours are R | G<<8 | B<<16 | A<<24. What lies behind the eye is not drawn.
 
+/// How much larger letters are than on an ordinary screen; sizes of panels go with it.
+float uiScale();
+
 inline constexpr std::uint32_t kOverlayShade = 0xaa000000u;
 
 void overlayLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour, float widthPx);

@@ -12,11 +12,13 @@
 
 #include "viewer/html_text.h"
 #include "viewer/legend.h"
+#include "viewer/overlay.h"
 
 namespace strata {
 namespace {
 
-constexpr float kWidth = 330.0f;      // pixels
+float panelWidth() { return 330.0f * uiScale(); }
+
 constexpr float kLeastBudget = 1e5f;  // points
 constexpr float kMostBudget = 1e8f;
 
@@ -50,21 +52,22 @@ bool drawRange(Range& range, const Range& limits, const Range& automatic, const 
 void drawLegend(const Legend& legend) {
   if (!legend.colours.empty()) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
-    const float width = 0.85f * kWidth, step = width / static_cast<float>(legend.colours.size());
+    const float width = 0.85f * panelWidth(), step = width / static_cast<float>(legend.colours.size());
     ImDrawList* canvas = ImGui::GetWindowDrawList();
     for (std::size_t i = 0; i < legend.colours.size(); ++i) {
       const float left = corner.x + step * static_cast<float>(i);
-      canvas->AddRectFilled({left, corner.y}, {left + step + 0.5f, corner.y + 10.0f}, legend.colours[i]);
+      canvas->AddRectFilled({left, corner.y}, {left + step + 0.5f, corner.y + 10.0f * uiScale()}, legend.colours[i]);
     }
-    ImGui::Dummy(ImVec2(width, 10.0f));
+    ImGui::Dummy(ImVec2(width, 10.0f * uiScale()));
     ImGui::TextDisabled("%s", legend.low.c_str());
-    ImGui::SameLine(0.85f * kWidth - ImGui::CalcTextSize(legend.high.c_str()).x + 8.0f);
+    ImGui::SameLine(0.85f * panelWidth() - ImGui::CalcTextSize(legend.high.c_str()).x + 8.0f);
     ImGui::TextDisabled("%s", legend.high.c_str());
   }
   for (std::size_t i = 0; i < legend.entries.size(); ++i) {
-    if (i % 2 == 1) ImGui::SameLine(0.48f * kWidth);
+    if (i % 2 == 1) ImGui::SameLine(0.48f * panelWidth());
     ImGui::ColorButton("##legend", ImGui::ColorConvertU32ToFloat4(legend.entries[i].colour),
-                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop, ImVec2(12.0f, 12.0f));
+                       ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
+                       ImVec2(12.0f * uiScale(), 12.0f * uiScale()));
     ImGui::SameLine();
     ImGui::TextDisabled("%s", legend.entries[i].label.c_str());
   }
@@ -158,7 +161,7 @@ bool drawSettings(ViewerSettings& settings, const ColourLimits& limits) {
 
 void line(const char* name, const std::string& value) {
   ImGui::TextUnformatted(name);
-  ImGui::SameLine(0.5f * kWidth);
+  ImGui::SameLine(0.5f * panelWidth());
   ImGui::TextUnformatted(value.c_str());
 }
 
@@ -168,7 +171,7 @@ void plot(const char* name, const Monitor& monitor, Monitor::Series which, const
   ImGui::PushID(name);
   ImGui::PlotLines("##plot", series.data(), static_cast<int>(series.size()), 0, nullptr, 0.0f,
                    static_cast<float>(std::max(1.05 * monitor.largest(which), 1e-3)),
-                   ImVec2(0.9f * kWidth, kPlotHeight));
+                   ImVec2(0.9f * panelWidth(), kPlotHeight * uiScale()));
   ImGui::PopID();
 }
 
@@ -241,7 +244,7 @@ void drawError(std::string& text) {
   if (text.empty()) return;
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, size.y - 24.0f), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(280.0f, 0.0f), ImVec2(0.8f * size.x, size.y));
+  ImGui::SetNextWindowSizeConstraints(ImVec2(280.0f * uiScale(), 0.0f), ImVec2(0.8f * size.x, size.y));
   if (ImGui::Begin("Something went wrong", nullptr,
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
     ImGui::PushTextWrapPos(0.7f * size.x);
@@ -273,7 +276,7 @@ void drawHint(const std::string& text) {
 
 bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourLimits& limits,
                const std::function<void()>& inside) {
-  const float outer = kWidth + 12.0f;
+  const float outer = panelWidth() + 12.0f;
   ImGui::SetNextWindowPos(ImVec2(12.0f, 12.0f), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints(ImVec2(outer, 0.0f), ImVec2(outer, ImGui::GetIO().DisplaySize.y - 24.0f));
   ImGui::SetNextWindowBgAlpha(0.82f);
@@ -281,7 +284,7 @@ bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourL
   if (ImGui::Begin("Strata", nullptr, ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::TextWrapped("%s", stats.layers.c_str());
     ImGui::TextDisabled("%s", stats.rasterizer.c_str());
-    ImGui::PushItemWidth(0.55f * kWidth);
+    ImGui::PushItemWidth(0.55f * panelWidth());
     if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen)) changed = drawSettings(settings, limits);
     if (ImGui::CollapsingHeader("Speed")) drawStats(stats);
     if (ImGui::CollapsingHeader("Inside")) inside();

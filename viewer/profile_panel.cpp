@@ -8,13 +8,14 @@
 
 #include "viewer/class_census.h"
 #include "viewer/html_text.h"
+#include "viewer/overlay.h"
 #include "viewer/pick.h"
 
 namespace strata {
 namespace {
 
 constexpr float kLeastPicture = 40.0f;  // pixels
-constexpr float kTickGap = 70.0f;       // pixels between marks of the scales, at least
+constexpr float kTickGap = 70.0f;       // pixels between marks of the scales, at least, times uiScale()
 constexpr double kZoomPerNotch = 0.85;
 constexpr int kReach = 6;  // pixels beside a point that still mean it
 constexpr float kFewestPoints = 1e4f, kMostPoints = 2e7f;
@@ -53,7 +54,7 @@ ProfilePanel::Outcome ProfilePanel::draw(std::vector<Measurement>& kept,
   bool stay = found != kept.end();
   if (stay) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
-    const float height = std::min(320.0f, 0.45f * size.y);
+    const float height = std::min(320.0f * uiScale(), 0.45f * size.y);
     ImGui::SetNextWindowPos(ImVec2(12.0f, size.y - height - 12.0f), ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSize(ImVec2(size.x - 24.0f, height), ImGuiCond_FirstUseEver);
     if (ImGui::Begin((found->name + "###profile").c_str(), &stay, ImGuiWindowFlags_NoScrollbar)) {
@@ -85,7 +86,7 @@ ProfilePanel::Outcome ProfilePanel::draw(std::vector<Measurement>& kept,
 }
 
 void ProfilePanel::drawControls(Measurement& profile, Outcome& outcome, const DrawOptions& options) {
-  ImGui::PushItemWidth(110.0f);
+  ImGui::PushItemWidth(110.0f * uiScale());
   const double least = 1e-3, most = 1e6;
   ImGui::DragScalar("wide", ImGuiDataType_Double, &profile.width, static_cast<float>(0.01 * profile.width), &least,
                     &most, "%.3g m", ImGuiSliderFlags_AlwaysClamp);
@@ -173,19 +174,19 @@ void ProfilePanel::drawScales(const glm::vec2& corner) const {
   const auto label = [&](double value, double step) {
     std::snprintf(text, sizeof text, step < 0.01 ? "%.3f" : step < 1.0 ? "%.2f" : "%.0f", value);
   };
-  const double step = niceStep(static_cast<double>(kTickGap) * window.metresPerPixel.x);
+  const double step = niceStep(static_cast<double>(kTickGap * uiScale()) * window.metresPerPixel.x);
   for (double x = std::ceil(first.x / step) * step; x < last.x; x += step) {
     const float at = corner.x + static_cast<float>(pixelOfProfile(window, {x, 0.0}).x);
     canvas->AddLine({at, corner.y}, {at, below}, kGridLine);
     label(x, step);
-    canvas->AddText({at + 3.0f, below - 16.0f}, kGridText, text);
+    canvas->AddText({at + 3.0f, below - 16.0f * uiScale()}, kGridText, text);
   }
-  const double rise = niceStep(0.6 * static_cast<double>(kTickGap) * window.metresPerPixel.y);
+  const double rise = niceStep(0.6 * static_cast<double>(kTickGap * uiScale()) * window.metresPerPixel.y);
   for (double z = std::ceil(first.y / rise) * rise; z < last.y; z += rise) {
     const float at = corner.y + static_cast<float>(pixelOfProfile(window, {0.0, z}).y);
     canvas->AddLine({corner.x, at}, {right, at}, kGridLine);
     label(z, rise);
-    canvas->AddText({corner.x + 3.0f, at - 15.0f}, kGridText, text);
+    canvas->AddText({corner.x + 3.0f, at - 15.0f * uiScale()}, kGridText, text);
   }
 }
 
