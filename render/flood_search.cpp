@@ -22,6 +22,22 @@ void forEachJump(int x, int y, int step, int width, int height, Visit visit) {
   }
 }
 
+/// The two halves of sameLayer(): most pairs end with the first.
+inline bool inReach(const FloodSeed& a, const FloodSeed& b) {
+  const glm::vec3 apart = b.position - a.position;
+  const float reach = std::min(a.reach, b.reach);
+  return glm::dot(apart, apart) <= reach * reach;
+}
+
+bool alike(const FloodSeed& a, const FloodSeed& b, const FloodSettings& settings) {
+  constexpr glm::vec3 kUnknown(0.0f);
+  if (a.normal == kUnknown || b.normal == kUnknown) return true;
+  const glm::vec3 apart = b.position - a.position;
+  const float off = std::max(std::abs(glm::dot(apart, a.normal)), std::abs(glm::dot(apart, b.normal)));
+  return std::abs(glm::dot(a.normal, b.normal)) >= settings.angle &&
+         off < settings.continuity * std::min(a.reach, b.reach);
+}
+
 /// What the layer search asks of most candidates, in little memory.
 struct SeedPlace {
   std::int16_t x, y;
@@ -57,7 +73,8 @@ class LayerList {
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
       if (layers_[i] == kNone) return put(i, candidate, distance);
-      if (sameLayer(seeds_.seeds[layers_[i]], seeds_.seeds[candidate], settings_)) {
+      const FloodSeed &held = seeds_.seeds[layers_[i]], &other = seeds_.seeds[candidate];
+      if (inReach(held, other) && alike(held, other, settings_)) {
         if (closer(distance, candidate, i)) put(i, candidate, distance);
         return;
       }
@@ -122,7 +139,7 @@ class NeighbourList {
     return glm::dot(apart, apart);
   }
   bool fits(float distance, const FloodSeed& other) const {
-    return distance > 0.0f && sameLayer(seed_, other, settings_);
+    return distance > 0.0f && inReach(seed_, other) && alike(seed_, other, settings_);
   }
   bool before(float distance, std::uint32_t candidate, std::size_t place) const {
     return found_[place] == kNone || distance < distances_[place] ||
@@ -143,13 +160,7 @@ class NeighbourList {
 }  // namespace
 
 bool sameLayer(const FloodSeed& a, const FloodSeed& b, const FloodSettings& settings) {
-  const glm::vec3 apart = b.position - a.position;
-  const float reach = std::min(a.reach, b.reach);
-  if (!(glm::dot(apart, apart) <= reach * reach)) return false;
-  constexpr glm::vec3 kUnknown(0.0f);
-  if (a.normal == kUnknown || b.normal == kUnknown) return true;
-  const float off = std::max(std::abs(glm::dot(apart, a.normal)), std::abs(glm::dot(apart, b.normal)));
-  return std::abs(glm::dot(a.normal, b.normal)) >= settings.angle && off < settings.continuity * reach;
+  return inReach(a, b) && alike(a, b, settings);
 }
 
 int firstFloodStep(const FloodSeeds& seeds, const FloodSettings& settings) {
