@@ -27,9 +27,9 @@ struct StageCost {
 };
 constexpr std::array<StageCost, 7> kTypicalMicros{{{stage::kSurvey, 0.0},
                                                    {stage::kMeasure, 0.10},
-                                                   {stage::kDistribute, 0.14},
-                                                   {stage::kBuild, 0.30},
-                                                   {stage::kMerge, 0.02},
+                                                   {stage::kDistribute, 0.10},
+                                                   {stage::kBuild, 0.20},
+                                                   {stage::kMerge, 0.03},
                                                    {stage::kNormals, 3.0},
                                                    {stage::kWrite, 0.01}}};
 
