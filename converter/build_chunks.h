@@ -16,10 +16,10 @@ std::vector<ChunkRecord> readChunks(const Journal& journal);
 /// Where the points of a chunk's top node wait; of one record.
 Spill::Handle readChunkTop(const Journal& journal, const Journal::Place& place);
 
-/// Builds the chunks of all buckets, several at a time, and writes them in order, behind those that `found` has of
-/// an interrupted conversion.
+/// Builds the chunks of all buckets, as many at a time as there are threads and have `pointsAtOnce` points together or
+/// one more, and writes them in order, behind those that `found` has of an interrupted conversion.
 std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& all, std::vector<ChunkRecord> found,
-                                  int chunksAtOnce, const ConvertOptions& options, Workspace work, NodeSink& sink,
-                                  const ConvertControl& control);
+                                  std::uint64_t pointsAtOnce, const ConvertOptions& options, Workspace work,
+                                  NodeSink& sink, const ConvertControl& control);
 
 }  // namespace strata

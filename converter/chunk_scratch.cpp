@@ -117,7 +117,7 @@ std::unique_ptr<ChunkScratch> ScratchPool::lend() {
 
 void ScratchPool::giveBack(std::unique_ptr<ChunkScratch> scratch) {
   const std::lock_guard lock(mutex_);
-  free_.push_back(std::move(scratch));
+  if (free_.size() < kMostKept) free_.push_back(std::move(scratch));
 }
 
 }  // namespace strata

@@ -40,9 +40,10 @@ void arrange(const BuildFrame& frame, const CellFrame& cell, std::span<const std
 std::array<std::size_t, 9> divide(const Columns& from, std::size_t begin, std::size_t end, int bit,
                                   std::span<const std::uint32_t> kept, Buffer<std::uint8_t>& octants, Columns& to);
 
-/// Lends scratches, as many as are asked for at the same time. Thread-safe.
+/// Lends scratches, as many as are asked for at the same time, and keeps a few for the next. Thread-safe.
 class ScratchPool {
  public:
+  static constexpr std::size_t kMostKept = 4;
   std::unique_ptr<ChunkScratch> lend();
   void giveBack(std::unique_ptr<ChunkScratch> scratch);
 

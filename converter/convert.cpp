@@ -28,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Chunks that are built at the same time share the memory cap; the number is fixed so that the chunks, and with
-/// them the store's bytes, do not depend on the number of threads.
+/// So many of the largest chunks are built at the same time, or more smaller ones, and share the memory cap; the number
+/// is fixed so that the chunks, and with them the store's bytes, do not depend on the number of threads.
 constexpr int kChunksAtOnce = 4;
 /// No chunk is larger, however much memory there is: stopping waits for the chunks that are being built.
 constexpr std::uint64_t kMostChunkPoints = 3'000'000;
@@ -300,7 +300,9 @@ void buildStore(const Sources& sources, const ConvertOptions& options, const Con
   NodeSink sink(session.folder.path(), written);
   written = {};
   found.resize(sink.chunksFound());
-  std::vector<ChunkTop> tops = buildChunks(frame, all, std::move(found), kChunksAtOnce, options, work, sink, control);
+  const std::uint64_t pointsAtOnce =
+      (kChunksAtOnce - 1) * chunkPointLimit(options, packedFormat(surveyed), surveyed.claimedPoints);
+  std::vector<ChunkTop> tops = buildChunks(frame, all, std::move(found), pointsAtOnce, options, work, sink, control);
   all = {};
   clock.begin(stage::kMerge);
   mergeChunks(frame, std::move(tops), work.spill, sink, control);
