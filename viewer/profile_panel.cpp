@@ -172,6 +172,7 @@ void ProfilePanel::drawScales(const glm::vec2& corner) const {
   char text[32];
   const glm::dvec2 first = metresAt(window, {0.0, window.height}), last = metresAt(window, {window.width, 0.0});
   const auto label = [&](double value, double step) {
+    if (std::abs(value) < 1e-6 * step) value = 0.0;  // no "-0"
     std::snprintf(text, sizeof text, step < 0.01 ? "%.3f" : step < 1.0 ? "%.2f" : "%.0f", value);
   };
   const double step = niceStep(static_cast<double>(kTickGap * uiScale()) * window.metresPerPixel.x);
