@@ -152,11 +152,21 @@ largest() {
 }
 targets() { table targets "$folder/sections"; }
 
-for section in "${sections[@]}"; do
-  note "$section"
-  start=$SECONDS
-  "$section" >"$folder/sections/$section.part"
-  mv "$folder/sections/$section.part" "$folder/sections/$section.md"
-  table put "$page" "$section" "$folder/sections/$section.md"
-  note "$section took $((SECONDS - start)) s"
-done
+# Several sections: each by itself, so that one that fails leaves its place in the page as it was and the others go on.
+if [ ${#sections[@]} -gt 1 ]; then
+  failed=()
+  quickly=()
+  [ $quick = 0 ] || quickly=(-q)
+  for section in "${sections[@]}"; do
+    "$0" -b "$build" -d "$folder" -o "$page" "${quickly[@]}" "$section" || failed+=("$section")
+  done
+  [ ${#failed[@]} = 0 ] || { echo "error: not measured: ${failed[*]}" >&2; exit 1; }
+  exit 0
+fi
+section=${sections[0]}
+note "$section"
+start=$SECONDS
+"$section" >"$folder/sections/$section.part"
+mv "$folder/sections/$section.part" "$folder/sections/$section.md"
+table put "$page" "$section" "$folder/sections/$section.md"
+note "$section took $((SECONDS - start)) s"

@@ -79,7 +79,7 @@ class TroubledDisk final : public ByteSource {
  private:
   const std::unique_ptr<ByteSource> file_;
   const Trouble trouble_;
-  mutable std::atomic<std::uint64_t> calls_{0};
+  mutable std::atomic<std::uint64_t> calls_{1};  // the first reads, which open the store, meet no fault
 };
 
 std::shared_ptr<const Store> openWith(const std::string& store, const TroubledDisk::Trouble& trouble) {
