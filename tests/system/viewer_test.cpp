@@ -136,7 +136,7 @@ TEST_F(Viewer, AScreenshotThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(viewInX({city().string(), "--size", "64x64", "--screenshot", "/nowhere/x.png"}).exitCode, 1);
 }
 
-TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitResizeSaveQuitAndReopen) {
+TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuitAndReopen) {
   if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
   if (!std::filesystem::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
   const std::filesystem::path folder = file("session");
@@ -158,6 +158,31 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitResizeSaveQuitAndReopen) {
     }
   EXPECT_NE(step("start").at("camera").at("eye"), step("orbited").at("camera").at("eye"));
   EXPECT_EQ(step("resized").at("measurements"), measured);
+  EXPECT_GE(step("clipped").at("clip_boxes").size(), 1u);
+  EXPECT_EQ(step("start").at("clip_boxes").size(), 0u);
+
+  // The picture: of the size asked for, with the scan in its middle and background around it.
+  const Image picture = readPng(folder / "city.png");
+  ASSERT_EQ(picture.width, 4096);
+  ASSERT_EQ(picture.height, 2560);
+  const auto background = std::count(picture.pixels.begin(), picture.pixels.end(), picture.pixels.front());
+  EXPECT_GT(static_cast<double>(background), 0.1 * 4096 * 2560);
+  EXPECT_LT(static_cast<double>(background), 0.99 * 4096 * 2560);
+
+  // The camera path is one that strata-bench plays.
+  const Json path = Json::parse(readWhole(folder / "city.path.json"));
+  ASSERT_GE(path.at("keys").size(), 2u);
+  EXPECT_NE(path.at("keys")[0].at("eye"), path.at("keys")[1].at("eye"));
+  EXPECT_EQ(path.at("keys")[0].at("t"), 0.0);
+  const Finished played =
+      bench("played", {"--path", (folder / "city.path.json").string(), "--settle", "--screenshot-every", "1000"});
+  EXPECT_EQ(played.exitCode, 0) << played.err;
+
+  // Hundredths of a second of CPU time in two seconds of drawing every frame, and of a window that is not seen.
+  const auto ticks = [&](const char* name) { return std::stol(readWhole(folder / name)); };
+  EXPECT_GT(ticks("ticks_shown"), 20);
+  EXPECT_LE(ticks("ticks_hidden"), 4);
+  EXPECT_GT(ticks("ticks_shown_again"), 20);
 
   // Reopened, the measurement is drawn where it was made.
   const std::string png = file("reopened.png").string();
@@ -169,6 +194,20 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitResizeSaveQuitAndReopen) {
     return (pixel & 0xff) > 240 && (pixel >> 8 & 0xff) > 180 && (pixel >> 8 & 0xff) < 210 && (pixel >> 16 & 0xff) < 20;
   });
   EXPECT_GT(yellow, 20);
+}
+
+TEST_F(Viewer, WritesAPictureOfAnySizeWithoutPanels) {
+  if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
+  const std::string png = file("large.png").string();
+  const Finished finished = viewInX(
+      {city().string(), "--backend", "cpu", "--size", "640x400", "--picture", png, "--picture-size", "3000x1200"});
+  ASSERT_EQ(finished.exitCode, 0) << finished.err;
+  const Image image = readPng(png);
+  EXPECT_EQ(image.width, 3000);
+  EXPECT_EQ(image.height, 1200);
+  EXPECT_GT(std::set<std::uint32_t>(image.pixels.begin(), image.pixels.end()).size(), 1000u);
+  EXPECT_EQ(viewInX({city().string(), "--picture", "/nowhere/x.png"}).exitCode, 1);
+  EXPECT_EQ(viewInX({city().string(), "--picture", png, "--picture-size", "20000x10"}).exitCode, 2);
 }
 
 TEST_F(Viewer, ConvertsAScanBesideItselfAndOpensItAndTheNextTimeOpensThatStore) {
