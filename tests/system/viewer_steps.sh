@@ -14,7 +14,7 @@ xdotool windowfocus "$window" 2>/dev/null || true
 sleep 2
 
 # Slow machines take in events late: a button stays down for longer than a frame.
-press() { sleep 0.3 && xdotool mousedown 1 && sleep 0.4; }
+press() { sleep 0.5 && xdotool mousedown 1 && sleep 0.8; }
 release() { sleep 0.3 && xdotool mouseup 1 && sleep 0.8; }
 save() {  # save NAME
   before=$(stat -c %y "$saved" 2>/dev/null || true)
