@@ -59,6 +59,20 @@ std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
                       Precision precision, NodeData& out);
 
+/// Where in the payload the planes that drawings look at end; 0 for those that the node does not have.
+struct PlaneEnds {
+  std::uint32_t position[3] = {0, 0, 0};
+  std::uint32_t colour = 0, intensity = 0, classification = 0, returnNumber = 0, normal = 0;
+  std::uint32_t whole = 0;  ///< where the last plane ends that has been at hand from its beginning to its end
+};
+
+/// Decodes all planes for drawing that lie whole in `bytes`, which stand in the payload from `from` on, into `out`,
+/// which holds what the bytes before them gave; it is replaced where `from` is 0, and then left without points when the
+/// bytes end too early for any. `from` is 0 or PlaneEnds::whole of those before; `head` is the payload's head. Throws
+/// Error as above.
+PlaneEnds decodePart(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
+                     std::uint32_t from, std::span<const std::byte> bytes, NodeData& out);
+
 /// Decodes everything, in drawing order and without drawColours. Throws Error as above.
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload);
 

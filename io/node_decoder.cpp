@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string_view>
 
 #include "core/error.h"
 #include "core/octahedral.h"
@@ -19,7 +20,11 @@ namespace {
 class PayloadReader {
  public:
   PayloadReader(const NodeRecord& record, std::span<const std::byte> payload)
-      : record_(record), payload_(payload), parsed_(parseHead(record, payload)) {}
+      : PayloadReader(record, payload, 0, payload) {}
+  /// `part` is what of the payload is at hand, from `from` on.
+  PayloadReader(const NodeRecord& record, std::span<const std::byte> head, std::size_t from,
+                std::span<const std::byte> part)
+      : record_(record), payload_(part), from_(from), parsed_(parseHead(record, head)) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw Error("points.bin", "node " + NodeKey{record_.key}.text() + ": " + what);
@@ -33,12 +38,30 @@ class PayloadReader {
   }
   std::vector<std::uint8_t>& spare() { return spare_; }
 
-  /// False as well where the bytes at hand end before the plane does.
-  bool holds(std::uint16_t id) const {
+  /// Where the plane ends in the payload; 0 when there is none.
+  std::size_t endOf(std::uint16_t id) const {
     std::size_t end = record_.headBytes;
     for (const PayloadPlane& p : parsed_.planes) {
       end += p.storedBytes;
-      if (p.id == id) return end <= payload_.size();
+      if (p.id == id) return end;
+    }
+    return 0;
+  }
+  /// Where the last plane ends that is at hand whole, and all before it.
+  std::size_t wholeEnd() const {
+    std::size_t end = record_.headBytes;
+    for (const PayloadPlane& p : parsed_.planes) {
+      if (end + p.storedBytes > from_ + payload_.size()) break;
+      end += p.storedBytes;
+    }
+    return end;
+  }
+  /// False as well where not all of the plane is at hand, or nothing is stored of it.
+  bool holds(std::uint16_t id) const {
+    std::size_t begin = record_.headBytes;
+    for (const PayloadPlane& p : parsed_.planes) {
+      if (p.id == id) return p.storedBytes > 0 && begin >= from_ && begin + p.storedBytes <= from_ + payload_.size();
+      begin += p.storedBytes;
     }
     return false;
   }
@@ -55,7 +78,9 @@ class PayloadReader {
         offset += p.storedBytes;
         continue;
       }
-      if (offset > payload_.size() || p.storedBytes > payload_.size() - offset) fail("truncated plane");
+      if (offset < from_ || offset - from_ > payload_.size() || p.storedBytes > payload_.size() - (offset - from_))
+        fail("truncated plane");
+      offset -= from_;
       const std::span<const std::byte> stored = payload_.subspan(offset, p.storedBytes);
       if (checksum(stored) != p.checksum) fail("block checksum mismatch");
       const auto encoding = static_cast<PlaneEncoding>(p.encoding);
@@ -81,6 +106,7 @@ class PayloadReader {
  private:
   const NodeRecord& record_;
   std::span<const std::byte> payload_;
+  std::size_t from_;
   ParsedHead parsed_;
   std::vector<std::byte> stored_;
   std::vector<std::uint8_t> spare_;
@@ -272,8 +298,6 @@ void describeBatches(const PayloadHead& head, const StoreInfo& info, NodeData& o
 
 /// What only some ways of drawing look at, where the bytes at hand hold it.
 void decodeShown(PayloadReader& payload, const StoreInfo& info, NodeData& out) {
-  out.returnNumber.clear();
-  out.normal.clear();
   const auto atHand = [&](int index) {
     return index >= 0 && payload.holds(static_cast<std::uint16_t>(kFirstAttributePlane + index));
   };
@@ -324,7 +348,54 @@ void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span
     decodeValues(payload, index, out.intensity);
   if (const int index = info.layout.find(attribute::kClassification); index >= 0)
     decodeValues(payload, index, out.classification);
+  out.returnNumber.clear();
+  out.normal.clear();
   decodeShown(payload, info, out);
+}
+
+PlaneEnds decodePart(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
+                     std::uint32_t from, std::span<const std::byte> bytes, NodeData& out) {
+  PayloadReader payload(record, head, from, bytes);
+  if (from == 0) {
+    out.key = NodeKey{record.key};
+    describeBatches(payload.head(), info, out);
+    for (auto& plane : out.position) plane.clear();
+    out.colour.clear();
+    out.intensity.clear();
+    out.classification.clear();
+    out.returnNumber.clear();
+    out.normal.clear();
+  }
+  const auto end = [&payload](std::uint16_t id) { return static_cast<std::uint32_t>(payload.endOf(id)); };
+  const bool isShort = from == 0 && bytes.size() < end(kPosition10) && bytes.size() < record.drawBytes[0];
+  for (int plane = 0; plane < 3; ++plane) {
+    const auto id = static_cast<std::uint16_t>(kPosition10 + plane);
+    const bool isFirst = plane == 0 && from == 0 && !isShort;  // even where it takes no bytes
+    if (!payload.holds(id) && !isFirst) continue;
+    const std::vector<Lanes> stored = plane == 0 ? leadingPositions(payload) : finerPositions(payload, plane);
+    out.position[plane].resize(stored.size());
+    payload.toDrawingOrder(stored, out.position[plane].data());
+  }
+  if (!isShort && out.position[0].size() != payload.pointCount()) payload.fail("not the points that were read before");
+  if (payload.holds(kColour)) decodeDrawnColours(payload, out.colour);
+  const auto idOf = [&info](std::string_view name) {
+    const int index = info.layout.find(name);
+    return index < 0 ? std::uint16_t{0xffff} : static_cast<std::uint16_t>(kFirstAttributePlane + index);
+  };
+  const std::uint16_t intensity = idOf(attribute::kIntensity), classification = idOf(attribute::kClassification);
+  if (payload.holds(intensity)) decodeValues(payload, intensity - kFirstAttributePlane, out.intensity);
+  if (payload.holds(classification)) decodeValues(payload, classification - kFirstAttributePlane, out.classification);
+  decodeShown(payload, info, out);
+
+  PlaneEnds ends;
+  ends.whole = static_cast<std::uint32_t>(payload.wholeEnd());
+  for (int plane = 0; plane < 3; ++plane) ends.position[plane] = end(static_cast<std::uint16_t>(kPosition10 + plane));
+  ends.colour = end(kColour);
+  ends.intensity = end(intensity);
+  ends.classification = end(classification);
+  ends.returnNumber = end(idOf(attribute::kReturnNumber));
+  ends.normal = std::max(end(idOf(attribute::kNormal)), end(idOf(attribute::kNormalOctahedral)));
+  return ends;
 }
 
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> bytes) {

@@ -38,14 +38,71 @@ std::uint32_t ListBuilder::takeWhatFits(const Selection& selection) {
   return static_cast<std::uint32_t>(left);
 }
 
-LoadRequest ListBuilder::requestFor(const SelectedNode& wanted) const {
+namespace {
+
+/// Where the plane that is shown ends; 0 where none is.
+std::uint32_t shownEnd(const PlaneEnds& ends, ColourMode shown) {
+  switch (shown) {
+    case ColourMode::rgb:
+      return ends.colour;
+    case ColourMode::intensity:
+      return ends.intensity;
+    case ColourMode::classification:
+      return ends.classification;
+    case ColourMode::returnNumber:
+      return ends.returnNumber;
+    case ColourMode::normal:
+      return ends.normal;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+std::uint32_t ListBuilder::bytesNeeded(const NodeRecord& record, const StreamedNode& present,
+                                       Precision precision) const {
+  if (!shown_) return drawBytes(record, precision);
+  const auto plane = static_cast<std::size_t>(precision) - 1;
+  return std::max(present.ends.position[plane], shownEnd(present.ends, *shown_));
+}
+
+std::uint32_t ListBuilder::bytesAtMost(const NodeRecord& record, Precision precision) const {
+  const bool isLate = shown_ == ColourMode::returnNumber || shown_ == ColourMode::normal;  // after all positions
+  return isLate ? record.payloadBytes : drawBytes(record, precision);
+}
+
+/// Where planes end stands in a node's head, which is not known before the node is read. Nodes of a scan are alike: so
+/// much of it is asked for as has been enough for all that are here; what that leaves out is read when it shows.
+void ListBuilder::learnShare() {
+  share_ = 0.0;
+  for (std::size_t i = 0; i < wanted_.size(); ++i) {
+    if (found_[i] == nullptr) continue;
+    const NodeRecord& record = store_.hierarchy().nodes[wanted_[i].node];
+    share_ = std::max(share_, static_cast<double>(bytesNeeded(record, *found_[i], Precision::low10)) /
+                                  std::max(bytesAtMost(record, Precision::low10), 1u));
+  }
+  if (share_ == 0.0) share_ = 1.0;
+}
+
+std::optional<LoadRequest> ListBuilder::requestFor(const SelectedNode& wanted, const StreamedNode* present) const {
   const NodeRecord& record = store_.hierarchy().nodes[wanted.node];
   LoadRequest request;
   request.node = wanted.node;
   request.precision = usefulPrecision(record, std::max(wanted.precision, leastPrecision_));
   request.priority = wanted.priority;
-  request.bytes = drawBytes(record, request.precision);
   request.offset = record.offset;
+  std::uint32_t needed = bytesAtMost(record, request.precision);
+  if (present != nullptr) {
+    needed = bytesNeeded(record, *present, request.precision);
+    if (needed <= present->leadingBytes) return std::nullopt;
+    request.from = present->leadingBytes;
+    request.offset += request.from;
+  } else if (request.precision == Precision::low10) {
+    constexpr double kMargin = 1.02;
+    needed = std::min(needed, static_cast<std::uint32_t>(kMargin * share_ * needed) + record.headBytes);
+  }
+  request.bytes = needed - request.from;
   return request;
 }
 
@@ -57,21 +114,24 @@ void ListBuilder::lookAhead(const Selection& selection, const FailedNodes::ByNod
     if (mark / kMarks == pass_) continue;  // wanted now
     bytes += nodeBytesBound(store_.hierarchy().nodes[selected.node], store_.info());
     if (bytes > cache_.capacityBytes()) return;
-    LoadRequest request = requestFor(selected);
-    if (cache_.loadedPlanes(selected.node) >= static_cast<int>(request.precision) || failed.contains(selected.node))
-      continue;
-    request.ahead = true;
-    requests.push_back(request);
+    if (failed.contains(selected.node)) continue;
+    std::optional<LoadRequest> request = requestFor(selected, cache_.peek(selected.node).get());
+    if (!request) continue;
+    request->ahead = true;
+    requests.push_back(*request);
   }
 }
 
-ListBuilder::Result ListBuilder::build(const Selection& selection, const FailedNodes::ByNode& failed, PinnedList& out,
+ListBuilder::Result ListBuilder::build(const Selection& selection, std::optional<ColourMode> shown,
+                                       const FailedNodes::ByNode& failed, PinnedList& out,
                                        std::vector<LoadRequest>& requests) {
   Result result;
+  shown_ = shown;
   requests.clear();
   drawn_.clear();
   result.overCapacity = takeWhatFits(selection);
   cache_.pin(indices_, found_, out.pins);
+  learnShare();
   const auto now = FailedNodes::Clock::now();
 
   ++pass_;
@@ -95,16 +155,15 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const FailedN
       continue;
     }
     const NodeRecord& record = store_.hierarchy().nodes[wanted.node];
-    LoadRequest request = requestFor(wanted);
-    request.alone = hasFailed;
-    const bool poor =
-        resident && wanted.pointCount > 0 && found_[i]->loadedPlanes() < static_cast<int>(request.precision);
-    if (poor) request.priority *= kUpgradeWeight;
+    std::optional<LoadRequest> request = requestFor(wanted, found_[i].get());
+    const bool poor = resident && request.has_value() && wanted.pointCount > 0;
+    if (request) request->alone = hasFailed;
+    if (poor) request->priority *= kUpgradeWeight;
     // While both versions of a node are held there has to be room for both.
     const bool roomForBoth = poor && wantedBytes_ + nodeBytesBound(record, store_.info()) <= cache_.capacityBytes();
     if (!resident || roomForBoth) {
       if (!hasFailed || !failure->second.mustWait(now)) {
-        requests.push_back(request);
+        requests.push_back(*request);
       } else if (!failure->second.outOfTries()) {
         ++result.waiting;
         result.retryAt = std::min(result.retryAt, failure->second.retryAt);

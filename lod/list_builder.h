@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,8 +36,8 @@ class ListBuilder {
 
   /// Fills `out.list.items` and `out.pins`, which must be empty, and replaces `requests`. A node is drawn when it and
   /// all its ancestors are resident. Nodes out of tries, and all below them, are not asked for again.
-  Result build(const Selection& selection, const FailedNodes::ByNode& failed, PinnedList& out,
-               std::vector<LoadRequest>& requests);
+  Result build(const Selection& selection, std::optional<ColourMode> shown, const FailedNodes::ByNode& failed,
+               PinnedList& out, std::vector<LoadRequest>& requests);
 
   /// After build(): adds requests for what another selection, of a view to come, wants beyond it, as far as the cache
   /// has room for both.
@@ -48,12 +49,20 @@ class ListBuilder {
  private:
   /// Keeps the most urgent nodes that fit the cache together, in `wanted_` by ascending index.
   std::uint32_t takeWhatFits(const Selection& selection);
-  LoadRequest requestFor(const SelectedNode& wanted) const;
+  /// For what is lacking of a node; none where nothing is. `present` is the node as it is, or null.
+  std::optional<LoadRequest> requestFor(const SelectedNode& wanted, const StreamedNode* present) const;
+  /// Leading bytes of the payload that the view needs.
+  std::uint32_t bytesNeeded(const NodeRecord& record, const StreamedNode& present, Precision precision) const;
+  std::uint32_t bytesAtMost(const NodeRecord& record, Precision precision) const;
+  void learnShare();
 
   const Store& store_;
   const std::span<const std::uint32_t> parents_;
   const Precision leastPrecision_;
   NodeCache& cache_;
+
+  std::optional<ColourMode> shown_;
+  double share_ = 1.0;  ///< of bytesAtMost() that nodes needed at most, of those that are wanted and here
 
   enum Mark : std::uint32_t { kDrawn, kBlocked, kMissing, kMarks };
   std::uint32_t pass_ = 0;

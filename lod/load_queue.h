@@ -18,7 +18,8 @@ struct LoadRequest {
   bool alone = false;        ///< has failed before: not to be read together with others
   bool ahead = false;        ///< not for the view, but for where the camera will soon be: after all that are
   std::uint32_t bytes = 0;   ///< to be read ...
-  std::uint64_t offset = 0;  ///< ... from here in points.bin
+  std::uint64_t offset = 0;  ///< ... from here in points.bin ...
+  std::uint32_t from = 0;    ///< ... which is so far into the node's payload: what stands before is there already
 };
 
 /// Requests that are read together.

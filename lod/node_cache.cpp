@@ -12,7 +12,8 @@ NodeCache::Insertion NodeCache::insert(std::uint32_t node, Data data, std::vecto
   const std::uint64_t bytes = data->memoryBytes();
   const std::lock_guard lock(mutex_);
   Entry* const present = find(node);
-  if (present != nullptr && data->loadedPlanes() <= present->data->loadedPlanes()) {
+  if (present != nullptr && data->loadedPlanes() <= present->data->loadedPlanes() &&
+      data->leadingBytes <= present->data->leadingBytes) {
     ++stats_.duplicates;
     out.push_back(std::move(data));
     return Insertion::duplicate;
@@ -64,6 +65,12 @@ void NodeCache::unpin(std::span<const Pin> pins, std::vector<Data>& out) {
     std::swap(*retired, retired_.back());
     retired_.pop_back();
   }
+}
+
+NodeCache::Data NodeCache::peek(std::uint32_t node) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = entries_.find(node);
+  return found != entries_.end() ? found->second.data : nullptr;
 }
 
 int NodeCache::loadedPlanes(std::uint32_t node) const {

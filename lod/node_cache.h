@@ -58,6 +58,8 @@ class NodeCache {
   bool contains(std::uint32_t node) const { return loadedPlanes(node) > 0; }
   /// StreamedNode::loadedPlanes() of the resident version, 0 when there is none.
   int loadedPlanes(std::uint32_t node) const;
+  /// The resident version, null when there is none. Does not pin it or mark it as wanted.
+  Data peek(std::uint32_t node) const;
   NodeCacheStats stats() const;
   std::uint64_t capacityBytes() const { return capacityBytes_; }
 

@@ -14,8 +14,15 @@ std::uint64_t bytesAPoint(const StoreInfo& info) {
   if (info.layout.find(attribute::kRgb) >= 0) bytes += sizeof(std::uint32_t);
   if (info.layout.find(attribute::kIntensity) >= 0) bytes += sizeof(std::uint16_t);
   if (info.layout.find(attribute::kClassification) >= 0) bytes += sizeof(std::uint8_t);
+  if (info.layout.find(attribute::kReturnNumber) >= 0) bytes += sizeof(std::uint8_t);
+  if (info.layout.find(attribute::kNormal) >= 0 || info.layout.find(attribute::kNormalOctahedral) >= 0)
+    bytes += sizeof(std::uint32_t);
   return bytes;
 }
+
+/// Bytes that are kept of a plane of which not all has been read: what is asked for too much when it is not known where
+/// planes end.
+std::uint64_t mostKept(const NodeRecord& record) { return record.headBytes + record.payloadBytes / 20; }
 
 /// Gives back what a buffer holds from a larger node before.
 void shrink(StreamedNode& node) {
@@ -24,6 +31,9 @@ void shrink(StreamedNode& node) {
   node.colour.shrink_to_fit();
   node.intensity.shrink_to_fit();
   node.classification.shrink_to_fit();
+  node.returnNumber.shrink_to_fit();
+  node.normal.shrink_to_fit();
+  node.head.shrink_to_fit();
   node.occluding.occluders.shrink_to_fit();
 }
 
@@ -39,8 +49,8 @@ std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
   const std::uint64_t points = record.pointCount;
   // Batches may be shorter than they could be; twice as many are allowed for, and a few for vectors that grow.
   const std::uint64_t batches = 8 + 2 * ((points + Batch::kMaxPoints - 1) / Batch::kMaxPoints);
-  return sizeof(StreamedNode) + batches * sizeof(Batch) + points * bytesAPoint(info) +
-         OccluderSet::mostOf(points) * sizeof(Occluder);
+  return sizeof(StreamedNode) + record.headBytes + mostKept(record) + batches * sizeof(Batch) +
+         points * bytesAPoint(info) + OccluderSet::mostOf(points) * sizeof(Occluder);
 }
 
 std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_token stop) {
@@ -50,15 +60,37 @@ std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_
   return bytes_.size();
 }
 
-void NodeLoader::decode(const LoadRequest& request, bool withOccluders, StreamedNode& out) const {
+bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders,
+                        StreamedNode& out) const {
   const NodeRecord& record = store_->hierarchy().nodes[request.node];
-  const auto start = static_cast<std::size_t>(request.offset - offset_);
-  decodeForDrawing(record, store_->info(), bytes_.subspan(start, request.bytes), request.precision, out);
-  if (withOccluders)
-    findOccluders(out, nodeCube({record.key}, store_->info().rootCube()), record.childMask, out.occluding);
-  else
+  std::span<const std::byte> bytes = bytes_.subspan(static_cast<std::size_t>(request.offset - offset_), request.bytes);
+  std::vector<std::byte> joined;  // with the part of a plane that the read before has brought
+  std::uint32_t from = 0;
+  if (before != nullptr) {
+    static_cast<NodeData&>(out) = *before;
+    out.head = before->head;
+    out.occluding = before->occluding;
+    from = before->ends.whole;
+    joined.assign(before->head.begin() + record.headBytes, before->head.end());
+    joined.insert(joined.end(), bytes.begin(), bytes.end());
+    bytes = joined;
+  } else {
+    const auto head = bytes.first(std::min<std::size_t>(bytes.size(), record.headBytes));
+    out.head.assign(head.begin(), head.end());
     out.occluding.occluders.clear();
+  }
+  out.ends = decodePart(record, store_->info(), out.head, from, bytes, out);
+  if (out.position[0].empty() && record.pointCount > 0) return false;
+  // What is left of the bytes is kept behind the head, where it is little.
+  const std::span<const std::byte> rest = bytes.subspan(out.ends.whole - from);
+  const bool isLittle = rest.size() <= mostKept(record);
+  out.leadingBytes = isLittle ? request.from + request.bytes : out.ends.whole;
+  out.head.resize(record.headBytes);
+  if (isLittle) out.head.insert(out.head.end(), rest.begin(), rest.end());
+  if (withOccluders && out.occluding.occluders.empty())
+    findOccluders(out, nodeCube({record.key}, store_->info().rootCube()), record.childMask, out.occluding);
   if (out.memoryBytes() > nodeBytesBound(record, store_->info())) shrink(out);
+  return true;
 }
 
 }  // namespace strata

@@ -32,9 +32,10 @@ class NodeLoader {
   /// those were; 0 when stopped. Throws what the source threw.
   std::uint64_t read(std::span<const LoadRequest> requests, std::stop_token stop);
 
-  /// Decodes one of the nodes that were read, using the memory of `out` again. Throws Error when its bytes are not
-  /// those that were written.
-  void decode(const LoadRequest& request, bool withOccluders, StreamedNode& out) const;
+  /// Decodes one of the nodes that were read, using the memory of `out` again. `before` is the node as it has been so
+  /// far, where the request is for the rest of it; else null. False when the request was for too few bytes to have any
+  /// points. Throws Error when its bytes are not those that were written.
+  bool decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders, StreamedNode& out) const;
 
  private:
   const std::shared_ptr<const Store> store_;

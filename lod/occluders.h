@@ -8,6 +8,7 @@
 
 #include "core/box.h"
 #include "core/node_data.h"
+#include "io/node_codec.h"
 
 namespace strata {
 
@@ -52,8 +53,13 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
 /// A node as the streamer keeps it.
 struct StreamedNode : NodeData {
   OccluderSet occluding;
+  std::vector<std::byte> head;     ///< of its payload, to read the rest by
+  std::uint32_t leadingBytes = 0;  ///< of the payload that have been read: whole planes
+  PlaneEnds ends;
 
-  std::uint64_t memoryBytes() const { return bytes() + occluding.occluders.capacity() * sizeof(Occluder); }
+  std::uint64_t memoryBytes() const {
+    return bytes() + head.capacity() + occluding.occluders.capacity() * sizeof(Occluder);
+  }
 };
 
 }  // namespace strata

@@ -1,8 +1,10 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "core/frame.h"
 #include "core/node_data.h"
 #include "core/view.h"
 #include "io/store.h"
@@ -19,6 +21,8 @@ struct SelectionOptions {
   static constexpr std::uint64_t kMaxPointBudget = 0xfffffffeu;  ///< point ids of a frame have 32 bits
 
   OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
+  /// What the streamer reads of a node beside its positions: what this shows. Nothing: colour, intensity and class.
+  std::optional<ColourMode> shown;
 
   bool operator==(const SelectionOptions&) const = default;
 };

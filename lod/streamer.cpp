@@ -204,7 +204,7 @@ void Streamer::runPass(const Task& task, bool isNewView) {
   counters_.occluded.store(selection_.occluded, std::memory_order_relaxed);
   failed_.copyIfNewer(failures_, failuresVersion_);
   step.next("build the list");
-  const ListBuilder::Result built = builder_.build(selection_, failures_, back_, requests_);
+  const ListBuilder::Result built = builder_.build(selection_, task.selection.shown, failures_, back_, requests_);
   back_.list.view = task.view;
   back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
   const bool pending = !requests_.empty() || built.waiting > 0;
@@ -285,7 +285,8 @@ bool Streamer::stillWanted(const LoadRequest& request) {
 
 void Streamer::keepWanted(std::vector<LoadRequest>& requests) {
   std::erase_if(requests, [this](const LoadRequest& request) {
-    if (cache_.loadedPlanes(request.node) >= static_cast<int>(request.precision) || failed_.mustWait(request.node)) {
+    const NodeCache::Data present = cache_.peek(request.node);
+    if ((present != nullptr ? present->leadingBytes : 0) != request.from || failed_.mustWait(request.node)) {
       queue_.finish(request.node);  // came or failed between the LOD pass's look and its new queue
       return true;
     }
@@ -315,6 +316,7 @@ bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> req
     somethingHappened();
     return true;
   }
+  std::vector<LoadRequest> tooShort;
   for (const LoadRequest& request : requests) {
     if (stop.stop_requested()) return false;
     if (buffer == nullptr) buffer = transfer_.tryTakeEmpty();
@@ -323,15 +325,30 @@ bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> req
     } else {
       TraceScope span(lane, "decode");
       span.count("node", request.node);
-      finishLoad(loader, request, buffer);
+      if (!finishLoad(loader, request, buffer)) tooShort.push_back(request);
     }
+  }
+  for (LoadRequest& request : tooShort) {  // rare: less of the node was asked for than has its first positions
+    request.bytes = drawBytes(store_->hierarchy().nodes[request.node], request.precision);
+    if (buffer == nullptr) buffer = transfer_.tryTakeEmpty();
+    if (buffer == nullptr)
+      queue_.putBack(request);
+    else if (!loadTogether(loader, {&request, 1}, stop, lane, buffer))
+      return false;
   }
   return true;
 }
 
-void Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer) {
+/// False when the request was for too few bytes.
+bool Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer) {
   try {
-    loader.decode(request, newestTask().selection.occlusion.enabled, *buffer);
+    const NodeCache::Data before = request.from > 0 ? cache_.peek(request.node) : nullptr;
+    if ((before != nullptr ? before->leadingBytes : 0) != request.from) {  // evicted, or another was quicker
+      queue_.finish(request.node);
+      nodesChanged();
+      return true;
+    }
+    if (!loader.decode(request, before.get(), newestTask().selection.occlusion.enabled, *buffer)) return false;
     counters_.nodesLoaded.fetch_add(1, std::memory_order_relaxed);
     counters_.pointsLoaded.fetch_add(buffer->pointCount(), std::memory_order_relaxed);
     if (request.ahead) counters_.nodesAhead.fetch_add(1, std::memory_order_relaxed);
@@ -342,6 +359,7 @@ void Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, 
     nodesChanged();
   }
   somethingHappened();
+  return true;
 }
 
 // --- render thread

@@ -140,6 +140,7 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
                Rasterizer& rasterizer, PlayOptions play) {
   Flight flight;
   StreamerOptions streaming = options.streamer;
+  streaming.selection.shown = shownBy(play.draw);
   if (options.trace) {
     flight.trace = std::make_unique<Trace>();
     play.lane = &flight.trace->addLane("render");
@@ -257,9 +258,10 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   const Scene scene = surveyScene(*store);
   StreamerOptions rich = options.streamer;
   rich.selection.pointsPerPixel = std::max(rich.selection.pointsPerPixel, kStillPointsPerPixel);
-  Streamer streamer(store, rich);
   DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
   applyDrawFlags(options.draw, draw);
+  rich.selection.shown = shownBy(draw);
+  Streamer streamer(store, rich);
   std::vector<ReportPicture> pictures;
   double farthest = 0.0;  // the overview stays where it is, each one after it nearer than the one before
   for (const Still& still : chooseStills(scene, *store, options.size.width, options.size.height)) {

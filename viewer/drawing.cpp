@@ -65,6 +65,12 @@ DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::option
   return draw;
 }
 
+std::optional<ColourMode> shownBy(const DrawOptions& draw) {
+  const bool isLate = draw.colour == ColourMode::returnNumber || draw.colour == ColourMode::normal;
+  if (!draw.classes.all() && !isLate) return std::nullopt;  // these two stand behind the classes
+  return draw.colour;
+}
+
 std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend) {
   if (backend == Backend::cpu) return createRasterizer(backend, {}, nullptr);
   if (backend != Backend::automatic) return createRasterizer(backend, {}, createHeadlessContext());

@@ -22,6 +22,10 @@ ColourMode bestColour(const StoreInfo& info);
 /// Colour, intensity from the 1st to the 99th percentile, elevation over `bounds`.
 DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::optional<ColourMode> colour);
 
+/// SelectionOptions::shown for such a drawing: what it looks at of the points beside their positions. Nothing, that is
+/// all that is usual, where some classes are left out.
+std::optional<ColourMode> shownBy(const DrawOptions& draw);
+
 /// A rasterizer without a window. `automatic` falls back to the cpu where there is no OpenGL.
 std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend);
 

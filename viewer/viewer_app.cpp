@@ -77,6 +77,8 @@ class ViewerApp {
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
     applyDrawFlags(options.draw, settings_.draw);
+    settings_.selection.shown = shownBy(settings_.draw);
+    layers_.setSelection(settings_.selection);
     settings_.draw.pointSize = options.pointSize;
     settings_.draw.edl = options.edl;
     settings_.backend = options.backend;
@@ -360,6 +362,10 @@ class ViewerApp {
     drawSpinner(stats_);
     drawHint(tools_.measure.hint());
     bool changed = drawSettingsPanel();
+    if (const auto shown = shownBy(settings_.draw); shown != settings_.selection.shown) {
+      settings_.selection.shown = shown;
+      layers_.setSelection(settings_.selection);
+    }
     if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
     const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);

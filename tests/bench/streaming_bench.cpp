@@ -261,10 +261,18 @@ void ahead(const std::string& store, const CameraPath& path) {
 
 void planes(const std::string& store, const CameraPath& path) {
   printFlightHead();
-  StreamerOptions full;
+  StreamerOptions full, shown;
   full.leastPrecision = Precision::full30;
-  printFlight("all planes", fly(openWith(store, {}), path, full, false));
-  printFlight("planes by need", fly(openWith(store, {}), path, {}, false));
+  shown.selection.shown = ColourMode::rgb;
+  for (const bool alone : {false, true}) {  // each node by itself: without the gaps that are read to save a read
+    for (StreamerOptions* options : {&full, &shown}) options->together.bytes = alone ? 0 : ReadLimits{}.bytes;
+    StreamerOptions need;
+    need.together = full.together;
+    const std::string how = alone ? ", each node alone" : "";
+    printFlight(("all planes" + how).c_str(), fly(openWith(store, {}), path, full, false));
+    printFlight(("precision by need" + how).c_str(), fly(openWith(store, {}), path, need, false));
+    printFlight(("and only the colour" + how).c_str(), fly(openWith(store, {}), path, shown, false));
+  }
 }
 
 // --- the loader

@@ -178,6 +178,53 @@ TEST(Streamer, FetchesFinerCoordinatesWhenTheEyeComesNear) {
   EXPECT_EQ(streamer.stats().residentNodes, 1u);
 }
 
+TEST(Streamer, ReadsOnlyTheRestOfANodeThatIsNeededInMoreDetail) {
+  const Terrain large = makeTerrain({.levels = 1, .side = 64, .cubeBits = 16}, true);
+  const NodeRecord& record = large.hierarchy.nodes[0];
+  Streamer streamer(makeStore(large), {});
+  streamer.setView(viewOfTerrain(large.info, 0.5, 0.2, 400.0));
+  ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+  EXPECT_EQ(streamer.stats().bytesRead, record.drawBytes[0]);
+  streamer.setView(viewOfTerrain(large.info, 0.5, 0.2, 4.0));
+  ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+  EXPECT_EQ(streamer.stats().bytesRead, record.drawBytes[1]);
+
+  // The same as what is decoded at once.
+  const std::shared_ptr<const NodeData> node = streamer.beginFrame().items.at(0).node;
+  NodeData whole;
+  readForDrawing(*makeStore(large), 0, Precision::medium20, whole);
+  for (int plane = 0; plane < 3; ++plane) EXPECT_EQ(node->position[plane], whole.position[plane]);
+  EXPECT_EQ(node->colour, whole.colour);
+  EXPECT_EQ(node->intensity, whole.intensity);
+}
+
+TEST(Streamer, ReadsOnlyWhatIsShownAndTheRestWhenThatChanges) {
+  StreamerOptions options;
+  options.together.bytes = 0;  // each node by itself
+  options.selection.shown = ColourMode::rgb;
+  const auto store = makeStore(terrain());
+  Streamer streamer(store, options);
+  streamer.setView(lookDown());
+  ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+  const std::uint64_t colours = streamer.stats().bytesRead;
+  std::uint64_t without = 0;
+  for (const RenderItem& item : streamer.beginFrame().items) {
+    EXPECT_EQ(item.node->colour.size(), item.node->pointCount());
+    for (const NodeRecord& record : terrain().hierarchy.nodes)
+      if (record.key == item.node->key.code) without += record.drawBytes[item.node->loadedPlanes() - 1];
+  }
+  EXPECT_LT(colours, without);
+
+  options.selection.shown = ColourMode::intensity;
+  streamer.setSelection(options.selection);
+  ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+  for (const RenderItem& item : streamer.beginFrame().items) {
+    EXPECT_EQ(item.node->intensity.size(), item.node->pointCount());
+    EXPECT_EQ(item.node->colour.size(), item.node->pointCount());
+  }
+  EXPECT_LE(streamer.stats().bytesRead, without) << "nothing is read twice";
+}
+
 TEST(Streamer, DrawsParentsWhileChildrenAreOnTheirWay) {
   Gate gate;
   // The root's payload is one read; everything after it waits.
