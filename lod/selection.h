@@ -22,7 +22,7 @@ struct SelectionOptions {
 
   OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
   /// What the streamer reads of a node beside its positions: what this shows. Nothing: colour, intensity and class.
-  std::optional<ColourMode> shown;
+  std::optional<ColourMode> shown{};
 
   bool operator==(const SelectionOptions&) const = default;
 };

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include "viewer/stills.h"
+#include "viewer/bench/stills.h"
 
 namespace strata {
 namespace {

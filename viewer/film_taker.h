@@ -5,9 +5,9 @@
 #include "core/frame.h"
 #include "lod/selection.h"
 #include "render/rasterizer.h"
+#include "viewer/bench/video.h"
 #include "viewer/camera_path.h"
 #include "viewer/layers.h"
-#include "viewer/video.h"
 
 namespace strata {
 

@@ -16,7 +16,8 @@ OpenedStores openStores(const std::vector<std::string>& paths) {
       opened.asked.push_back(i);
     } catch (const Error& error) {
       if (opened.stores.empty() && i + 1 == paths.size()) throw;
-      opened.failures += (opened.failures.empty() ? "" : "\n") + std::string(error.what());
+      if (!opened.failures.empty()) opened.failures += '\n';
+      opened.failures += error.what();
     }
   }
   return opened;

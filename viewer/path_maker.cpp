@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
-#include "viewer/stills.h"
+#include "viewer/bench/stills.h"
 #include "viewer/street_search.h"
 
 namespace strata {

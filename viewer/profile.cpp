@@ -10,7 +10,7 @@
 
 #include "io/field_map.h"
 #include "io/node_codec.h"
-#include "viewer/html_text.h"
+#include "viewer/bench/html_text.h"
 #include "viewer/pick.h"
 
 namespace strata {

@@ -12,7 +12,7 @@
 #include "render/progressive_rasterizer.h"
 #include "render/shuffle.h"
 #include "render/stopwatch.h"
-#include "viewer/suite_clouds.h"
+#include "viewer/bench/suite_clouds.h"
 
 namespace strata::bench {
 namespace {

@@ -34,9 +34,9 @@
 #include "io/synthetic_city.h"
 #include "io/synthetic_scanner.h"
 #include "lod/streamer.h"
+#include "viewer/bench/measures.h"
 #include "viewer/camera_path.h"
 #include "viewer/drawing.h"
-#include "viewer/measures.h"
 
 namespace strata {
 namespace {

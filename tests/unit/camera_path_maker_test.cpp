@@ -3,10 +3,10 @@
 #include <cmath>
 #include <random>
 
+#include "viewer/bench/stills.h"
 #include "viewer/camera_control.h"
 #include "viewer/detail_place.h"
 #include "viewer/path_maker.h"
-#include "viewer/stills.h"
 
 namespace strata {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/report.h"
+#include "viewer/bench/report.h"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 
 #include "core/error.h"
 #include "tests/support/test_data.h"
-#include "viewer/compare.h"
-#include "viewer/html_plot.h"
-#include "viewer/html_text.h"
+#include "viewer/bench/compare.h"
+#include "viewer/bench/html_plot.h"
+#include "viewer/bench/html_text.h"
 #include "viewer/text_file.h"
 
 namespace strata {

@@ -1,0 +1,79 @@
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "core/frame.h"
+#include "viewer/measurement.h"
+#include "viewer/profile_picture.h"
+#include "viewer/window/profile_reader.h"
+#include "viewer/window/screen.h"
+
+namespace strata {
+
+/// The window that shows one profile: its picture with scales, the point under the cursor, how deep it was read and
+/// why not deeper. For the render thread, with the GL context current.
+class ProfilePanel {
+ public:
+  explicit ProfilePanel(GlContext::GetProc getProc) : screen_(getProc) {}
+
+  /// Opens the window for a profile of the measurements.
+  void show(const Measurement& profile);
+  bool open() const { return !line_.empty(); }
+  bool reading() const { return reader_.pending(); }
+
+  struct Outcome {
+    std::optional<glm::dvec3> pointed;  ///< the point under the cursor, world
+    std::string csv;                    ///< what is to be saved; empty = nothing
+    std::string name;                   ///< of the profile
+    std::string failure;                ///< of reading, once
+  };
+  /// Between Window::beginFrame() and finishFrame(). The profile's width is changed in `kept`; the window closes when
+  /// the profile is there no longer. Reads from `stores` again when they, the width or the depth were changed.
+  Outcome draw(std::vector<Measurement>& kept, const std::vector<std::shared_ptr<const Store>>& stores,
+               const DrawOptions& options);
+
+ private:
+  /// What a profile is read by.
+  struct Question {
+    double width = 0.0;
+    int depth = ProfileOptions::kDeepest;
+    std::uint64_t mostPoints = ProfileOptions{}.mostPoints;
+    std::vector<std::shared_ptr<const Store>> stores;
+
+    bool operator==(const Question&) const = default;
+  };
+  /// What a picture is drawn by.
+  struct Look {
+    ProfileWindow window;
+    ColourMode colour{};
+    int pointSize = 0;
+    glm::vec2 intensity{0.0f};
+    glm::dvec2 elevation{0.0};
+    glm::u8vec3 background{0};
+    std::bitset<256> classes;
+    std::uint64_t serial = 0;
+
+    bool operator==(const Look&) const = default;
+  };
+
+  void drawControls(Measurement& profile, Outcome& outcome, const DrawOptions& options);
+  void drawPicture(const DrawOptions& options, Outcome& outcome);
+  void drawScales(const glm::vec2& corner) const;
+
+  std::vector<glm::dvec3> line_;  ///< of the profile that is shown; empty = closed
+  Question wanted_, asked_;
+  ProfileReader reader_;
+  Profile profile_;
+  std::uint64_t serial_ = 0;  ///< counts profiles
+  double stretch_ = 1.0;
+  std::optional<ProfileWindow> window_;  ///< none: all of it
+  Look look_;
+  Frame picture_;
+  Screen screen_;
+};
+
+}  // namespace strata

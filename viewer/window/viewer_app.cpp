@@ -1,0 +1,471 @@
+#include "viewer/window/viewer_app.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+#include "core/error.h"
+#include "core/image.h"
+#include "core/log.h"
+#include "viewer/bench/stills.h"
+#include "viewer/camera_control.h"
+#include "viewer/layers.h"
+#include "viewer/opened_stores.h"
+#include "viewer/project.h"
+#include "viewer/scene.h"
+#include "viewer/text_file.h"
+#include "viewer/window/choose_panel.h"
+#include "viewer/window/inside_panel.h"
+#include "viewer/window/keeper.h"
+#include "viewer/window/measure_panel.h"
+#include "viewer/window/overlay.h"
+#include "viewer/window/panel.h"
+#include "viewer/window/point_lookup.h"
+#include "viewer/window/profile_panel.h"
+#include "viewer/window/progressive_panel.h"
+#include "viewer/window/scan_conversion.h"
+#include "viewer/window/screen.h"
+#include "viewer/window/window.h"
+
+namespace strata {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot's full detail
+constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
+constexpr double kNearShare = 1e-5;  // of the scan's diagonal: how near the eye may come to something small
+constexpr int kPanelFrames = 2;
+constexpr int kClickReach = 6;  // pixels beside a point that still mean it
+constexpr std::uint32_t kPointedColour = 0xffffc840u;
+constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
+
+glm::vec2 intensityLimits(const AttributeRange& range) {
+  return {static_cast<float>(range.min), static_cast<float>(std::max(range.max, range.min + 1.0))};
+}
+
+/// Draws into the window's context.
+std::unique_ptr<Rasterizer> createAnyRasterizer(const ViewerOptions& options, const Layers& layers) {
+  auto context = adoptCurrentContext(Window::getProc());
+  if (options.progressive.millions == 0.0) return createRasterizer(options.backend, {}, std::move(context));
+  const std::uint64_t budget = options.streamer.selection.pointBudget;
+  std::uint64_t points = 0;
+  for (const auto& store : layers.stores()) points += store->info().points;
+  return createProgressiveRasterizer(std::move(context), progressiveOptions(options.progressive, budget, points));
+}
+
+class ViewerApp {
+ public:
+  explicit ViewerApp(const ViewerOptions& options)
+      : options_(options),
+        opened_(openStores(options.stores)),
+        layers_(opened_.stores, options.streamer),
+        scene_(surveyStores(layers_.stores())),
+        window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
+                options.screenshot.empty() && options.picture.empty()),
+        screen_(Window::getProc()),
+        profile_(Window::getProc()),
+        inside_(Window::getProc()),
+        rasterizer_(createAnyRasterizer(options, layers_)),
+        progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
+        control_(overviewStill(scene_, options.size.width, options.size.height).view) {
+    View first = control_.view();
+    first.nearPlane = std::min(first.nearPlane, kNearShare * scene_.bounds.diagonal());
+    control_.setView(first);
+    keeper_.state().pathFile = layerNames({options.stores.front()}) + ".path.json";
+    keeper_.state().filmFile = layerNames({options.stores.front()}) + ".mp4";
+    keeper_.state().pictureFile = layerNames({options.stores.front()}) + ".png";
+    settings_.selection = options.streamer.selection;
+    settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
+    applyDrawFlags(options.draw, settings_.draw);
+    settings_.selection.shown = shownBy(settings_.draw);
+    layers_.setSelection(settings_.selection);
+    settings_.draw.pointSize = options.pointSize;
+    settings_.draw.edl = options.edl;
+    settings_.backend = options.backend;
+    backend_ = options.backend;
+    stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
+    stats_.error = opened_.failures;
+    for (const std::size_t i : opened_.asked) tools_.layers.push_back(layerNames({options.stores[i]}));
+    tools_.shown.assign(opened_.asked.size(), true);
+    lostShown_.assign(options.stores.size(), true);
+    limits_.elevation = settings_.draw.elevationRange;
+    limits_.automatic = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
+    for (const auto& store : layers_.stores()) {
+      stats_.pointsInStores += store->info().points;
+      stats_.layers += (stats_.layers.empty() ? "" : ", ") +
+                       tools_.layers[static_cast<std::size_t>(&store - layers_.stores().data())];
+      limits_.levels = std::max(limits_.levels, store->info().levels);
+      const int intensity = store->info().layout.find(attribute::kIntensity);
+      if (intensity >= 0)
+        limits_.intensity = intensityLimits(store->info().ranges[static_cast<std::size_t>(intensity)]);
+    }
+    tools_.classes = settings_.draw.classes;
+    planes_ = settings_.draw.clip.planes;
+    for (const Box& box : settings_.draw.clip.boxes) tools_.clip.add(box);
+  }
+
+  /// Goes on where a session was left.
+  void restore(const Project& project) {
+    settings_.draw = project.draw;
+    settings_.selection.pointBudget = project.pointBudget;
+    settings_.selection.pointsPerPixel = project.pointsPerPixel;
+    lostShown_ = project.shown;
+    for (std::size_t i = 0; i < opened_.asked.size(); ++i) tools_.shown[i] = project.shown[opened_.asked[i]];
+    tools_.bookmarks = project.bookmarks;
+    tools_.classes = project.draw.classes;
+    tools_.clip.boxes() = project.clipBoxes;
+    tools_.measure.kept() = project.measurements;
+    keptBefore_ = project.measurements.size();
+    control_.setView(project.view);
+    layers_.setSelection(settings_.selection);
+    layers_.setShown(tools_.shown);
+  }
+
+  void run() {
+    bool idle = false;
+    while (!window_.closed()) {
+      const WindowInput input = window_.beginFrame(idle ? kIdleWait : 0.0);
+      if (keeper_.working()) {
+        work(input);
+        idle = input.hidden;
+        continue;
+      }
+      if (input.hidden) {
+        window_.finishFrame();
+        idle = true;
+        continue;
+      }
+      steer(input);
+      useTools(input);
+      useKeeper(input);
+      drawFrame(input.width, input.height);
+      const bool changed = drawOver();
+      window_.finishFrame();
+      window_.present();
+      idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
+             !lookup_.pending() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
+    }
+  }
+
+  void screenshot(const std::string& file) {
+    WindowInput input;
+    bool uploading = true;
+    // The panel knows its size only in its second frame.
+    for (int i = 0; i < kPanelFrames || uploading; ++i) {
+      input = window_.beginFrame(0.0);
+      control_.resize(input.width, input.height);
+      layers_.setView(control_.view());
+      layers_.waitUntilComplete(kLongestWait);
+      drawFrame(input.width, input.height);
+      drawOver();
+      window_.finishFrame();
+      uploading = !isFinished(stats_.draw);
+    }
+    writePng(file, screen_.read(input.width, input.height));
+  }
+
+  /// The scene alone, in any size.
+  void picture(const std::string& file, const PictureSize& size) {
+    View view = control_.view();
+    view.width = size.width;
+    view.height = size.height;
+    const DrawOptions draw = scaledToPicture(settings_.draw, options_.size.height, size.height);
+    PictureTaker taker({file, view, draw, settings_.selection}, layers_, *rasterizer_);
+    while (!taker.goOn(kLongestWait)) {
+    }
+    if (taker.unfinishedParts() > 0)
+      logWarning(file + ": " + std::to_string(taker.unfinishedParts()) + " parts lack detail that could not be had");
+  }
+
+ private:
+  Keeper::Scene keeperScene() {
+    return {layers_, *rasterizer_, settings_.draw, settings_.selection, options_.stores.front()};
+  }
+
+  /// A frame of the progress while a picture or a film is being drawn; behind it stands the newest frame.
+  void work(const WindowInput& input) {
+    if (!input.hidden) window_.drawPicture(screen_.texture());
+    keeper_.goOn(keeperScene(), input.drop);
+    tell();
+    drawError(stats_.error);
+    window_.finishFrame();
+    if (!input.hidden) window_.present();
+  }
+
+  void tell() {
+    if (const std::string notice = keeper_.takeNotice(); !notice.empty()) stats_.notice = notice;
+    if (const std::string error = keeper_.takeError(); !error.empty()) stats_.error = error;
+  }
+
+  /// Keys of camera paths, and the path that is being recorded or played.
+  void useKeeper(const WindowInput& input) {
+    KeepState& state = keeper_.state();
+    if (input.pictures) state.open = !state.open;
+    if (input.takePicture) keeper_.startPicture(control_.view(), keeperScene());
+    if (input.pathKey) {
+      keeper_.addKey(control_.view());
+      stats_.notice = "key " + std::to_string(state.path.keys().size()) + " of the camera path is set";
+    }
+    if (input.record) keeper_.toggleRecording(control_.view());
+    if (input.play) keeper_.togglePlaying();
+    const bool handOn = input.dragging || input.wheel != 0.0 || !input.fly.still() || control_.gliding();
+    if (handOn) keeper_.stopPlaying();
+    if (const auto view = keeper_.play(control_.view(), input.seconds)) control_.setView(*view);
+    keeper_.record(control_.view(), input.seconds);
+  }
+
+  /// The world point below the cursor in the newest picture, where there is one.
+  std::optional<glm::dvec3> pointUnder(const glm::dvec2& cursor) const {
+    const int x = static_cast<int>(std::floor(cursor.x));
+    const int y = static_cast<int>(std::floor(cursor.y));
+    if (x < 0 || y < 0 || x >= frame_.width || y >= frame_.height) return std::nullopt;
+    const float depth =
+        frame_
+            .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x)];
+    if (!std::isfinite(depth)) return std::nullopt;
+    return worldPoint(control_.view(), cursor, static_cast<double>(depth));
+  }
+
+  void steer(const WindowInput& input) {
+    control_.resize(input.width, input.height);
+    control_.advance(input.seconds);
+    if (input.leftPressed && tools_.clip.press(control_.view(), input.cursor)) {
+      control_.release();
+    } else if (input.leftPressed)
+      control_.pressLeft(input.cursor, pointUnder(input.cursor));
+    if (input.rightPressed) control_.pressRight(input.cursor, pointUnder(input.cursor));
+    if (input.dragging && tools_.clip.held())
+      tools_.clip.move(control_.view(), input.cursor);
+    else if (input.dragging)
+      control_.move(input.cursor);
+    if (!input.dragging) control_.release();
+    if (input.wheel != 0.0) control_.wheel(input.wheel, input.cursor, pointUnder(input.cursor));
+    if (!input.fly.still()) control_.fly(input.fly, input.seconds);
+    const View& view = control_.view();
+    stats_.flySpeed = flySpeed(view, input.fly.fast);
+    if (input.frameAll) control_.glideTo(framed(view, scene_.bounds));
+    if (input.front) control_.glideTo(standardView(view, scene_.bounds, StandardView::front));
+    if (input.side) control_.glideTo(standardView(view, scene_.bounds, StandardView::side));
+    if (input.top) control_.glideTo(standardView(view, scene_.bounds, StandardView::top));
+    if (input.nextMode) control_.setMode(nextMode(control_.mode()));
+    stats_.mode = control_.mode();
+    if (input.orthographic) control_.setView(withOrthographic(view, !view.orthographic));
+    if (input.doubleClicked && !tools_.measure.active())
+      if (const auto point = pointUnder(input.cursor)) control_.glideTo(approached(view, *point));
+  }
+
+  /// Clicks and keys of picking and measuring; the answers of the disk.
+  void useTools(const WindowInput& input) {
+    if (input.help) helpOpen_ = !helpOpen_;
+    if (input.measure) tools_.measure.begin(MeasureKind::distance);
+    if (input.profile) tools_.measure.begin(MeasureKind::profile);
+    if (input.clipBox) tools_.clip.add(boxInView(control_.view(), scene_.bounds));
+    if (input.keep) tools_.measure.finish();
+    if (input.takeBack) tools_.measure.undo();
+    if (input.drop) tools_.measure.cancel();
+    if (input.save) saveProject();
+    const bool onHandle = tools_.clip.held().has_value();
+    if (!input.dragging) tools_.clip.release();
+    if (input.clicked && !onHandle && list_ != nullptr) {
+      if (const auto seen = drawnPointAt(*list_, frame_, input.cursor, kClickReach)) {
+        const std::shared_ptr<const NodeData>& node = list_->items[seen->item].node;
+        lookup_.ask(layers_.stores()[layers_.indexOfItem(seen->item)], node->key, seen->point,
+                    pointUnder(input.cursor).value_or(node->origin));
+      }
+    }
+    if (const auto answer = lookup_.take()) {
+      if (!answer->error.empty()) {
+        stats_.error = answer->error;
+      } else {
+        tools_.picked = answer->point;
+        tools_.measure.add(answer->point.position);
+      }
+    }
+    if (input.doubleClicked && tools_.measure.active() && isOpenEnded(tools_.measure.current()->kind))
+      endMeasuring_ = true;
+    if (endMeasuring_ && !lookup_.pending()) {
+      tools_.measure.finish();
+      endMeasuring_ = false;
+    }
+    tools_.lookingUp = lookup_.pending();
+  }
+
+  void drawFrame(int width, int height) {
+    control_.resize(width, height);
+    const auto start = std::chrono::steady_clock::now();
+    const View ahead = motion_.ahead(control_.view(), start);
+    const View& chosenFor = inside_.chosenFor(control_.view());
+    layers_.setView(chosenFor, chosenFor == control_.view() ? ahead : chosenFor);
+    const RenderList& list = layers_.beginFrame();
+    list_ = &list;
+    for (std::size_t i = 0; i < list.items.size(); ++i) tools_.census.add(layers_.indexOfItem(i), *list.items[i].node);
+    settings_.draw.clip = clipOf(tools_.clip.boxes(), planes_);
+    settings_.draw.classes = tools_.classes;
+    stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
+    screen_.upload(frame_);
+    window_.drawPicture(screen_.texture());
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    stats_.frameMs = stats_.frameMs == 0.0 ? ms : stats_.frameMs + kSmoothing * (ms - stats_.frameMs);
+    stats_.missingNodes = list.missingNodes;
+    stats_.complete = layers_.complete();
+    stats_.streamer = layers_.stats();
+    stats_.nodesDrawn = list.items.size();
+    stats_.monitor.add(start, {ms, stats_.draw.pointsDrawn, list.items.size(), list.missingNodes}, stats_.streamer);
+    limits_.classes = tools_.census.present();
+    sayDamage();
+  }
+
+  /// Names the layers of which nodes were given up, once for each number of them.
+  void sayDamage() {
+    if (stats_.streamer.nodesGivenUp == damageSaid_) return;
+    damageSaid_ = stats_.streamer.nodesGivenUp;
+    stats_.error.clear();
+    for (std::size_t i = 0; i < layers_.stores().size(); ++i)
+      if (const std::uint64_t lost = layers_.statsOf(i).nodesGivenUp; lost > 0)
+        stats_.error += (stats_.error.empty() ? "" : "\n") + tools_.layers[i] + ": " + std::to_string(lost) +
+                        " of the nodes seen so far cannot be read and are left out; the rest is shown";
+  }
+
+  /// Takes another rasterizer where one was chosen; one that cannot work here is refused and the old one stays.
+  void switchBackend() {
+    if (settings_.backend == backend_) return;
+    try {
+      rasterizer_ = createRasterizer(settings_.backend, {}, adoptCurrentContext(Window::getProc()));
+      progressive_ = nullptr;
+      backend_ = settings_.backend;
+      stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
+    } catch (const Error& error) {
+      stats_.error = error.what();
+      settings_.backend = backend_;
+    }
+  }
+
+  bool drawSettingsPanel() {
+    settings_.fovY = control_.view().fovY;
+    const bool changed = drawPanel(settings_, stats_, limits_, [this] { inside_.drawSection(stats_.nodesDrawn); });
+    if (!changed) return false;
+    if (settings_.fovY != control_.view().fovY) {
+      View view = control_.view();
+      view.fovY = settings_.fovY;
+      control_.setView(view);
+    }
+    switchBackend();
+    layers_.setSelection(settings_.selection);
+    return true;
+  }
+
+  /// Measurements, panels and messages. True when something was changed that the picture shows.
+  bool drawOver() {
+    drawClipBoxes(tools_.clip, control_.view());
+    drawMeasurements(tools_.measure, control_.view(), tools_.picked);
+    if (list_ != nullptr) inside_.drawOver(layers_, *list_, control_.view());
+    drawSpinner(stats_);
+    drawHint(tools_.measure.hint());
+    bool changed = drawSettingsPanel();
+    if (const auto shown = shownBy(settings_.draw); shown != settings_.selection.shown) {
+      settings_.selection.shown = shown;
+      layers_.setSelection(settings_.selection);
+    }
+    if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
+    const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
+    if (request.layersChanged) layers_.setShown(tools_.shown);
+    if (request.goTo) control_.glideTo(*request.goTo);
+    if (request.addBookmark)
+      tools_.bookmarks.push_back({"view " + std::to_string(tools_.bookmarks.size() + 1), control_.view()});
+    const std::vector<Measurement>& kept = tools_.measure.kept();
+    if (request.exportCsv) save(tools_.exportBase + ".csv", measurementsCsv(kept));
+    if (request.exportGeoJson)
+      save(tools_.exportBase + ".geojson", measurementsGeoJson(kept, layers_.stores().front()->info().crs));
+    if (request.saveProject) saveProject();
+    drawProfile(request.showProfile);
+    const auto keepAsks = keeper_.draw(control_.view(), keeperScene());
+    if (keepAsks) control_.glideTo(*keepAsks);
+    tell();
+    drawHelp(helpOpen_);
+    drawError(stats_.error);
+    return changed || request.layersChanged || request.pictureChanged || request.goTo || keepAsks;
+  }
+
+  /// The window of a profile, which opens by itself for one that was just made.
+  void drawProfile(std::optional<std::size_t> asked) {
+    std::vector<Measurement>& kept = tools_.measure.kept();
+    if (kept.size() > keptBefore_ && kept.back().kind == MeasureKind::profile) asked = kept.size() - 1;
+    keptBefore_ = kept.size();
+    if (asked && *asked < kept.size()) profile_.show(kept[*asked]);
+    std::vector<std::shared_ptr<const Store>> shown;
+    for (std::size_t i = 0; i < layers_.stores().size(); ++i)
+      if (tools_.shown[i]) shown.push_back(layers_.stores()[i]);
+    const ProfilePanel::Outcome outcome = profile_.draw(kept, shown, settings_.draw);
+    if (outcome.pointed) overlayRing(control_.view(), *outcome.pointed, kPointedColour, 8.0f);
+    if (!outcome.csv.empty()) save(fileNameOf(outcome.name) + ".csv", outcome.csv);
+    if (!outcome.failure.empty()) stats_.error = outcome.failure;
+  }
+
+  void save(const std::string& file, const std::string& text) {
+    try {
+      writeText(file, text);
+      stats_.notice = "saved " + file;
+    } catch (const Error& error) {
+      stats_.error = error.what();
+    }
+  }
+
+  void saveProject() {
+    const std::string file = options_.project.empty() ? tools_.layers.front() + ".project.json" : options_.project;
+    std::vector<bool> shown = lostShown_;  // what is not there today is kept for another day
+    for (std::size_t i = 0; i < opened_.asked.size(); ++i) shown[opened_.asked[i]] = tools_.shown[i];
+    save(file, projectJson(file, {options_.stores, shown, control_.view(), settings_.draw, tools_.clip.boxes(),
+                                  settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
+                                  tools_.measure.kept()}));
+    if (!keeper_.state().path.keys().empty()) keeper_.savePath(control_.view(), keeperScene());
+  }
+
+  const ViewerOptions options_;
+  const OpenedStores opened_;
+  Layers layers_;
+  const Scene scene_;
+  Window window_;
+  Screen screen_;
+  ProfilePanel profile_;
+  InsidePanel inside_;
+  std::unique_ptr<Rasterizer> rasterizer_;
+  ProgressiveRasterizer* progressive_;  ///< rasterizer_, or null where that draws everything in each frame
+  CameraControl control_;
+  CameraMotion motion_;
+  ViewerSettings settings_;
+  ViewerStats stats_;
+  ColourLimits limits_;
+  Backend backend_ = Backend::automatic;  ///< of rasterizer_, as asked for
+  std::uint64_t damageSaid_ = 0;          ///< nodes given up that the user was told of
+  std::vector<bool> lostShown_;           ///< by path asked for: what the project said
+  ToolsState tools_;
+  PointLookup lookup_;
+  Keeper keeper_;
+  std::vector<glm::dvec4> planes_;  ///< of the command line
+  std::size_t keptBefore_ = 0;      ///< measurements in the last frame
+  bool endMeasuring_ = false;       ///< as soon as the point asked for is there
+  bool helpOpen_ = false;
+  const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
+  Frame frame_;
+};
+
+}  // namespace
+
+void runViewer(const ViewerOptions& asked) {
+  ViewerOptions options = asked;
+  std::optional<Project> project;
+  if (options.stores.size() == 1 && options.stores.front().ends_with(".json") &&
+      std::filesystem::is_regular_file(options.stores.front())) {
+    options.project = options.stores.front();
+    project = parseProject(options.project, readText(options.project));
+    options.stores = project->stores;
+  }
+  if (!convertScans(options)) return;
+  ViewerApp app(options);
+  if (project) app.restore(*project);
+  if (!options.screenshot.empty()) app.screenshot(options.screenshot);
+  if (!options.picture.empty()) app.picture(options.picture, options.pictureSize);
+  if (options.screenshot.empty() && options.picture.empty()) app.run();
+}
+
+}  // namespace strata
