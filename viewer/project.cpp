@@ -190,6 +190,7 @@ void parseDraw(const Members& members, Project& project) {
   members.read("elevation_high", draw.elevationRange.y);
   members.read("fill", draw.fill, 1, DrawOptions::kLargestFill);
   if (draw.fill % 2 == 0) members.fail("fill", "1, 3, 5 or 7");
+  members.read("jump_flood", draw.jumpFlood);
   for (const Json& hidden : members.list("hidden_classes")) {
     if (!hidden.is_number_unsigned() || hidden.get<std::uint64_t>() > 255)
       members.fail("hidden_classes", "classes from 0 to 255");
@@ -232,6 +233,7 @@ std::string projectJson(const std::string& path, const Project& project) {
                       {"elevation_low", draw.elevationRange.x},
                       {"elevation_high", draw.elevationRange.y},
                       {"fill", draw.fill},
+                      {"jump_flood", draw.jumpFlood},
                       {"background", colourText(draw.background)},
                       {"hidden_classes", classesJson(~draw.classes)},
                       {"point_budget", project.pointBudget},

@@ -25,6 +25,7 @@ Project someProject() {
   project.draw.background = {200, 210, 220};
   project.draw.backgroundBelow = glm::u8vec3(10, 20, 30);
   project.draw.fill = 5;
+  project.draw.jumpFlood = true;
   project.draw.classes.reset(7).reset(255);
   project.clipBoxes = {{"the hall", {{1.5, 2.25, 3.0}, {630000.123456789, 5.0, 6.0}}, false, true},
                        {"the noise", {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, true, false}};
@@ -53,6 +54,7 @@ TEST(Project, ComesBackAsItWasSaved) {
   EXPECT_EQ(read.draw.background, saved.draw.background);
   EXPECT_EQ(read.draw.backgroundBelow, saved.draw.backgroundBelow);
   EXPECT_EQ(read.draw.fill, 5);
+  EXPECT_TRUE(read.draw.jumpFlood);
   EXPECT_EQ(read.draw.classes, saved.draw.classes);
   EXPECT_EQ(read.clipBoxes, saved.clipBoxes);
   EXPECT_EQ(read.pointBudget, saved.pointBudget);
