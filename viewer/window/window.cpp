@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/error.h"
@@ -50,31 +51,42 @@ float contentScale(GLFWwindow* window) {
   return std::clamp(std::max(x, y) / std::max(own, 0.1f), 1.0f, 4.0f);
 }
 
-/// What went down since the last frame, however briefly: Dear ImGui before 1.87 only knows what is down at a frame.
-struct KeyPresses {
+/// What went down since the last frame, however briefly, and where: Dear ImGui before 1.87 only knows what is down at a
+/// frame and where the cursor is then.
+struct Presses {
   struct Press {
     int key = 0;
     bool control = false;
   };
-  std::vector<Press> presses;
+  std::vector<Press> keys;
+  glm::dvec2 cursor{0.0};              ///< when the last event came, window units
+  std::optional<glm::dvec2> buttonAt;  ///< where a mouse button went down
 
   bool plain(int key) const { return has({key, false}); }
   bool withControl(int key) const { return has({key, true}); }
 
  private:
   bool has(const Press& wanted) const {
-    return std::any_of(presses.begin(), presses.end(),
+    return std::any_of(keys.begin(), keys.end(),
                        [&](const Press& p) { return p.key == wanted.key && p.control == wanted.control; });
   }
 };
 
 void takeKey(GLFWwindow* window, int key, int, int action, int modifiers) {
   if (action == GLFW_PRESS)
-    static_cast<KeyPresses*>(glfwGetWindowUserPointer(window))
-        ->presses.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+    static_cast<Presses*>(glfwGetWindowUserPointer(window))->keys.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
 }
 
-void readKeys(GLFWwindow* window, const KeyPresses& keys, WindowInput& input) {
+void takeCursor(GLFWwindow* window, double x, double y) {
+  static_cast<Presses*>(glfwGetWindowUserPointer(window))->cursor = {x, y};
+}
+
+void takeButton(GLFWwindow* window, int, int action, int) {
+  auto* presses = static_cast<Presses*>(glfwGetWindowUserPointer(window));
+  if (action == GLFW_PRESS) presses->buttonAt = presses->cursor;
+}
+
+void readKeys(GLFWwindow* window, const Presses& keys, WindowInput& input) {
   input.frameAll = keys.plain(GLFW_KEY_F);
   input.front = keys.plain(GLFW_KEY_1) || keys.plain(GLFW_KEY_KP_1);
   input.side = keys.plain(GLFW_KEY_3) || keys.plain(GLFW_KEY_KP_3);
@@ -106,7 +118,7 @@ void readKeys(GLFWwindow* window, const KeyPresses& keys, WindowInput& input) {
 
 struct Window::Parts {
   GLFWwindow* window = nullptr;
-  KeyPresses keys;
+  Presses presses;
 
   Parts(const std::string& title, int width, int height, bool visible) {
     if (glfwInit() != GLFW_TRUE) throw windowError();
@@ -127,8 +139,11 @@ struct Window::Parts {
     ImFontConfig font;
     font.SizePixels = std::round(kTextHeight * scale);
     ImGui::GetIO().Fonts->AddFontDefault(&font);
-    glfwSetWindowUserPointer(window, &keys);
-    glfwSetKeyCallback(window, takeKey);  // before Dear ImGui's, which calls it
+    glfwSetWindowUserPointer(window, &presses);
+    glfwGetCursorPos(window, &presses.cursor.x, &presses.cursor.y);
+    glfwSetKeyCallback(window, takeKey);  // before Dear ImGui's, which call these
+    glfwSetMouseButtonCallback(window, takeButton);
+    glfwSetCursorPosCallback(window, takeCursor);
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330");
   }
@@ -151,7 +166,8 @@ Window::~Window() = default;
 bool Window::closed() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }
 
 WindowInput Window::beginFrame(double waitSeconds) {
-  parts_->keys.presses.clear();
+  parts_->presses.keys.clear();
+  parts_->presses.buttonAt.reset();
   if (waitSeconds > 0.0)
     glfwWaitEventsTimeout(waitSeconds);
   else
@@ -168,17 +184,21 @@ WindowInput Window::beginFrame(double waitSeconds) {
                  glfwGetWindowAttrib(parts_->window, GLFW_ICONIFIED) == GLFW_TRUE ||
                  glfwGetWindowAttrib(parts_->window, GLFW_VISIBLE) == GLFW_FALSE;
   input.seconds = std::min(static_cast<double>(io.DeltaTime), kLongestStep);
-  input.cursor = glm::dvec2(io.MousePos.x * io.DisplayFramebufferScale.x, io.MousePos.y * io.DisplayFramebufferScale.y);
+  const glm::dvec2 pixels(io.DisplayFramebufferScale.x, io.DisplayFramebufferScale.y);  // in a window unit
+  input.cursor = pixels * glm::dvec2(io.MousePos.x, io.MousePos.y);
   input.dragging = io.MouseDown[0] || io.MouseDown[1];
   if (!io.WantCaptureMouse) {
     input.leftPressed = io.MouseClicked[0];
     input.rightPressed = io.MouseClicked[1];
+    // A hand that moves on before a slow frame begins has still pressed where it pressed; the next frame moves.
+    if ((input.leftPressed || input.rightPressed) && parts_->presses.buttonAt)
+      input.cursor = pixels * *parts_->presses.buttonAt;
     input.wheel = static_cast<double>(io.MouseWheel);
     input.doubleClicked = io.MouseDoubleClicked[0];
     input.clicked = io.MouseReleased[0] && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx;
   }
-  if (!io.WantCaptureKeyboard) readKeys(parts_->window, parts_->keys, input);
-  if (parts_->keys.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
+  if (!io.WantCaptureKeyboard) readKeys(parts_->window, parts_->presses, input);
+  if (parts_->presses.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
   return input;
 }
 
