@@ -6,8 +6,8 @@
 #            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
 #   -q       quick: everything a hundredth, only to see that it works
 #   SECTION  machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real largest
-#            targets; default: all but largest
-# Sizes, from the environment: CONVERT="10M 50M", CITY=50e6 and ROOM=20e6 (points of the stores that are flown through),
+#            larger targets; default: all but larger and largest
+# Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M", CITY=50e6 and ROOM=20e6 (points of the stores that are flown through),
 # LARGEST=500e6, RASTER=10 (million points), SCALE=0.02 (of the papers' numbers), KANZOK_SCALE=SCALE, REPEAT=3 (flights),
 # VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through). RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
 set -euo pipefail
@@ -26,9 +26,9 @@ shift $((OPTIND - 1))
 sections=("$@")
 [ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real targets)
 if [ $quick = 1 ]; then
-  : "${CONVERT:=100k}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
+  : "${CONVERT:=100k}" "${LARGER:=200k}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
-: "${CONVERT:=10M 50M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
+: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
 : "${KANZOK_SCALE:=$SCALE}" "${RED_ROCKS:=$root/../shared/data/laz/large/red_rocks_4.0M.laz}"
 export PATH=$build/bin:$build/tests:$PATH
 if [ -z "$folder" ]; then
@@ -59,6 +59,9 @@ fly() { strata-bench "$folder/$1.strata" --path "$2" -o "$folder/$3" --backend c
 machine() { table machine "$folder" "$root"; }
 conversion() { # shellcheck disable=SC2086
   "$root/tests/bench/convert.sh" -b "$build" $CONVERT
+}
+larger() { # shellcheck disable=SC2086
+  "$root/tests/bench/convert.sh" -b "$build" -r 1 $LARGER
 }
 store() {
   made_store store_city "synthetic:city?points=10e6&seed=1"
