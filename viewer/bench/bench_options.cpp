@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
-#include <iostream>
 
 #include "core/error.h"
+#include "viewer/command_line.h"
 
 namespace strata {
 namespace {
@@ -102,14 +102,7 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   compare->add_option("-o,--output", options.comparison,
                       "also write a page with the pictures side by side, such as compare.html");
   compare->add_option("--fail-above", raw.failAbove, "exit with 1 when B is worse by more than this, such as 5%");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {
-    app.exit(asked, std::cout, std::cerr);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
-  }
+  if (!parseCommandLine(app, argc, argv)) return std::nullopt;
   OcclusionOptions& occlusion = options.streamer.selection.occlusion;
   if (raw.occlusion == "exact") occlusion = OcclusionOptions::exact();
   occlusion.enabled = raw.occlusion != "off";

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
-#include <iostream>
 
-#include "core/error.h"
+#include "viewer/command_line.h"
 #include "viewer/window/viewer_app.h"
 
 namespace strata {
@@ -33,14 +32,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   app.add_option("--picture", options.picture, "write the scene without panels in full detail to this PNG and end");
   app.add_option("--picture-size", pictureSize, "of that picture, up to 16384x16384 pixels")->capture_default_str();
   app.add_option("--screenshot", options.screenshot, "write one complete frame to this PNG and end");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& asked) {
-    app.exit(asked, std::cout, std::cerr);
-    return std::nullopt;
-  } catch (const CLI::ParseError& error) {
-    throw UsageError(error.what());
-  }
+  if (!parseCommandLine(app, argc, argv)) return std::nullopt;
   options.backend = parseBackend(backend);
   checkProgressive(options.progressive, backend, options.draw);
   options.size = parseSize(size);
