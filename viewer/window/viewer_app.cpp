@@ -77,8 +77,7 @@ class ViewerApp {
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
     applyDrawFlags(options.draw, settings_.draw);
-    settings_.selection.shown = shownBy(settings_.draw);
-    layers_.setSelection(settings_.selection);
+    select();
     settings_.draw.pointSize = options.pointSize;
     settings_.draw.edl = options.edl;
     settings_.backend = options.backend;
@@ -117,7 +116,7 @@ class ViewerApp {
     tools_.measure.kept() = project.measurements;
     keptBefore_ = project.measurements.size();
     control_.setView(project.view);
-    layers_.setSelection(settings_.selection);
+    select();
     layers_.setShown(tools_.shown);
   }
 
@@ -340,6 +339,12 @@ class ViewerApp {
     }
   }
 
+  /// What is loaded follows from what is drawn.
+  void select() {
+    settings_.selection.shown = shownBy(settings_.draw);
+    layers_.setSelection(settings_.selection);
+  }
+
   bool drawSettingsPanel() {
     settings_.fovY = control_.view().fovY;
     const bool changed = drawPanel(settings_, stats_, limits_, [this] { inside_.drawSection(stats_.nodesDrawn); });
@@ -350,7 +355,7 @@ class ViewerApp {
       control_.setView(view);
     }
     switchBackend();
-    layers_.setSelection(settings_.selection);
+    select();
     return true;
   }
 
@@ -362,10 +367,7 @@ class ViewerApp {
     drawSpinner(stats_);
     drawHint(tools_.measure.hint());
     bool changed = drawSettingsPanel();
-    if (const auto shown = shownBy(settings_.draw); shown != settings_.selection.shown) {
-      settings_.selection.shown = shown;
-      layers_.setSelection(settings_.selection);
-    }
+    if (shownBy(settings_.draw) != settings_.selection.shown) select();  // classes may have been hidden
     if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
     const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);
