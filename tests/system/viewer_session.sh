@@ -3,19 +3,14 @@
 # take a picture, hide, resize, save, quit.
 # usage: viewer_session.sh STRATA_VIEW STORE FOLDER; leaves FOLDER/*.project.json of each step, NAME.path.json, NAME.png.
 set -euo pipefail
-program=$(type -P xdotool)
-xdotool() { timeout 10 "$program" "$@" || true; }  # now and then it waits for an answer that does not come
+# shellcheck source=viewer_hands.sh
+. "$(dirname "$0")/viewer_hands.sh"
 view=$1 store=$2
 cd "$3"
 name=$(basename "$store" .strata)
 saved=$name.project.json
 
-"$view" "$store" --backend cpu --size 800x600 &
-viewer=$!
-trap 'kill $viewer 2>/dev/null || true' EXIT
-window=$(timeout 60 "$program" search --sync --onlyvisible --name Strata | head -n 1)
-focus() { xdotool windowfocus "$window" 2>/dev/null || true; }
-focus
+start_viewer "$view" "$store" --backend cpu --size 800x600
 
 # Slow machines take in events late: what is done is done again until the saved project shows it.
 save() {  # save STEP
@@ -102,16 +97,4 @@ xdotool key r
 xdotool windowsize "$window" 640 700
 sleep 1
 save resized
-for _ in $(seq 60); do
-  xdotool key ctrl+q 2>/dev/null || true
-  for _ in $(seq 10); do
-    sleep 0.1
-    if ! kill -0 $viewer 2>/dev/null; then
-      trap - EXIT
-      wait $viewer
-      exit $?
-    fi
-  done
-done
-echo "the viewer does not quit" >&2
-exit 1
+quit_viewer

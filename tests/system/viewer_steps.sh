@@ -3,14 +3,12 @@
 # usage: viewer_steps.sh STRATA_VIEW FOLDER STEPS SAVED ARGUMENT...; SAVED is the project file that Control + S writes.
 # steps:  key NAME   click X Y   drag X0 Y0 X1 Y1   save NAME (leaves FOLDER/NAME.project.json)
 set -euo pipefail
+# shellcheck source=viewer_hands.sh
+. "$(dirname "$0")/viewer_hands.sh"
 view=$1 steps=$3 saved=$4
 cd "$2"
 shift 4
-"$view" "$@" &
-viewer=$!
-trap 'kill $viewer 2>/dev/null || true' EXIT
-window=$(timeout 60 xdotool search --sync --onlyvisible --name Strata | head -n 1)
-xdotool windowfocus "$window" 2>/dev/null || true
+start_viewer "$view" "$@"
 sleep 2
 
 # Slow machines take in events late: a button stays down for longer than a frame.
@@ -45,16 +43,4 @@ while read -r step a b c d; do
   esac
 done <"$steps"
 
-for _ in $(seq 60); do
-  xdotool key ctrl+q 2>/dev/null || true
-  for _ in $(seq 10); do
-    sleep 0.1
-    if ! kill -0 $viewer 2>/dev/null; then
-      trap - EXIT
-      wait $viewer
-      exit $?
-    fi
-  done
-done
-echo "the viewer does not quit" >&2
-exit 1
+quit_viewer
