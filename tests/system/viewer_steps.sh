@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # strata-view used by hand inside an X server, step by step as the file STEPS says, then quit with Control + Q.
 # usage: viewer_steps.sh STRATA_VIEW FOLDER STEPS SAVED ARGUMENT...; SAVED is the project file that Control + S writes.
-# steps:  key NAME   click X Y   drag X0 Y0 X1 Y1   save NAME (leaves FOLDER/NAME.project.json)
+# steps:  key NAME   down NAME   up NAME   click X Y   drag X0 Y0 X1 Y1   save NAME (leaves FOLDER/NAME.project.json)
 set -euo pipefail
 # shellcheck source=viewer_hands.sh
 . "$(dirname "$0")/viewer_hands.sh"
@@ -30,6 +30,8 @@ save() {  # save NAME
 while read -r step a b c d; do
   case $step in
     key) xdotool key "$a" && sleep 0.8 ;;
+    down) xdotool keydown "$a" && sleep 0.5 ;;
+    up) xdotool keyup "$a" && sleep 0.5 ;;
     click) xdotool mousemove "$a" "$b" && press && release ;;
     drag)
       xdotool mousemove "$a" "$b" && press

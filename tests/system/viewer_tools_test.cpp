@@ -112,6 +112,12 @@ TEST_F(ViewerTools, AClipBoxIsMadeByAKeyDraggedByItsHandleKeptAndCutsThePicture)
   EXPECT_LT(inside, whole / 2);
 }
 
+TEST_F(ViewerTools, AShortcutFliesNotThoughControlGoesUpBeforeItsLetter) {
+  if (!fs::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
+  handsOn(store().string(), "city.project.json", "save first\ndown ctrl\ndown s\nup ctrl\nup s\nsave again\n");
+  EXPECT_EQ(project("again").view.eye, project("first").view.eye);
+}
+
 TEST_F(ViewerTools, AClassThatIsHiddenInTheProjectIsNotDrawn) {
   handsOn(store().string(), "city.project.json", "save classes\n");
   const int whole = pointPixels(pictureOf({file("classes.project.json").string()}, "classes.png"));

@@ -7,6 +7,7 @@
 #include <imgui/backends/imgui_impl_opengl3.h>
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -52,13 +53,15 @@ float contentScale(GLFWwindow* window) {
 }
 
 /// What went down since the last frame, however briefly, and where: Dear ImGui before 1.87 only knows what is down at a
-/// frame and where the cursor is then.
+/// frame and where the cursor is then. And which keys are down that went down without Control: those of a shortcut are
+/// none that fly, not even while their letter outlasts Control.
 struct Presses {
   struct Press {
     int key = 0;
     bool control = false;
   };
   std::vector<Press> keys;
+  std::bitset<GLFW_KEY_LAST + 1> held;
   glm::dvec2 cursor{0.0};              ///< when the last event came, window units
   std::optional<glm::dvec2> buttonAt;  ///< where a mouse button went down
 
@@ -73,8 +76,11 @@ struct Presses {
 };
 
 void takeKey(GLFWwindow* window, int key, int, int action, int modifiers) {
-  if (action == GLFW_PRESS)
-    static_cast<Presses*>(glfwGetWindowUserPointer(window))->keys.push_back({key, (modifiers & GLFW_MOD_CONTROL) != 0});
+  auto* presses = static_cast<Presses*>(glfwGetWindowUserPointer(window));
+  const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
+  if (action == GLFW_PRESS) presses->keys.push_back({key, control});
+  if (key >= 0 && action != GLFW_REPEAT)
+    presses->held.set(static_cast<std::size_t>(key), action == GLFW_PRESS && !control);
 }
 
 void takeCursor(GLFWwindow* window, double x, double y) {
@@ -86,7 +92,7 @@ void takeButton(GLFWwindow* window, int, int action, int) {
   if (action == GLFW_PRESS) presses->buttonAt = presses->cursor;
 }
 
-void readKeys(GLFWwindow* window, const Presses& keys, WindowInput& input) {
+void readKeys(const Presses& keys, WindowInput& input) {
   input.frameAll = keys.plain(GLFW_KEY_F);
   input.front = keys.plain(GLFW_KEY_1) || keys.plain(GLFW_KEY_KP_1);
   input.side = keys.plain(GLFW_KEY_3) || keys.plain(GLFW_KEY_KP_3);
@@ -107,7 +113,7 @@ void readKeys(GLFWwindow* window, const Presses& keys, WindowInput& input) {
   input.play = keys.plain(GLFW_KEY_SPACE);
   input.nextMode = keys.plain(GLFW_KEY_G);
   if (ImGui::GetIO().KeyCtrl) return;  // no flying with a shortcut
-  const auto held = [window](int key) { return glfwGetKey(window, key) == GLFW_PRESS ? 1 : 0; };
+  const auto held = [&keys](std::size_t key) { return keys.held[key] ? 1 : 0; };
   input.fly.forward = held(GLFW_KEY_W) - held(GLFW_KEY_S);
   input.fly.right = held(GLFW_KEY_D) - held(GLFW_KEY_A);
   input.fly.up = held(GLFW_KEY_E) - held(GLFW_KEY_Q);
@@ -197,7 +203,7 @@ WindowInput Window::beginFrame(double waitSeconds) {
     input.doubleClicked = io.MouseDoubleClicked[0];
     input.clicked = io.MouseReleased[0] && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx;
   }
-  if (!io.WantCaptureKeyboard) readKeys(parts_->window, parts_->presses, input);
+  if (!io.WantCaptureKeyboard) readKeys(parts_->presses, input);
   if (parts_->presses.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
   return input;
 }
