@@ -1,17 +1,13 @@
 #include "converter/build_chunks.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <exception>
-#include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <span>
-#include <thread>
 #include <utility>
 
 #include "converter/chunk_builder.h"
+#include "converter/in_order.h"
 #include "converter/run_sorter.h"
 #include "converter/slices.h"
 #include "core/error.h"
@@ -69,82 +65,8 @@ class Releaser {
 };
 
 struct Work {
-  std::size_t index = 0;
-  std::uint64_t points = 0;  ///< in memory
   std::vector<Extent> extents;
   BuiltChunk built;
-};
-
-/// Takes chunks up in order, builds them on several threads, and finishes them in order, one at a time. A thread goes
-/// on while its chunk waits for an older one (chunks differ in size by a factor of ten and more), as long as all that
-/// are neither finished nor waiting to be taken up have `pointsAtOnce` points together, or there is only one.
-class InOrder {
- public:
-  std::uint64_t pointsAtOnce;
-  std::size_t next, end;                           ///< chunks to take up
-  std::function<std::uint64_t(std::size_t)> size;  ///< Work::points of a chunk
-  std::function<Work(std::size_t)> begin;          ///< one call at a time, in order
-  std::function<void(Work&)> build;                ///< on all threads
-  std::function<void(Work&)> finish;               ///< one call at a time, in order
-
-  /// Throws what was thrown first.
-  void run(int threads) {
-    {
-      std::vector<std::jthread> others;
-      for (int i = 1; i < threads; ++i) others.emplace_back([this] { work(); });
-      work();
-    }
-    if (thrown_) std::rethrow_exception(thrown_);
-  }
-
- private:
-  void work() {
-    std::unique_lock lock(mutex_);
-    try {
-      for (;;) {
-        changed_.wait(lock, [&] { return over() || taken_ == 0 || taken_ + size(next) <= pointsAtOnce; });
-        if (over()) return;
-        Work chunk = begin(next);
-        chunk.index = next++;
-        chunk.points = size(chunk.index);
-        taken_ += chunk.points;
-        ++unfinished_;
-        lock.unlock();
-        build(chunk);
-        lock.lock();
-        built_.emplace(chunk.index, std::move(chunk));
-        finishAll(lock);
-      }
-    } catch (...) {
-      if (!lock.owns_lock()) lock.lock();
-      if (!thrown_) thrown_ = std::current_exception();
-      changed_.notify_all();
-    }
-  }
-  void finishAll(std::unique_lock<std::mutex>& lock) {
-    while (!finishing_ && !thrown_ && !built_.empty() && built_.begin()->first + unfinished_ == next) {
-      Work chunk = std::move(built_.begin()->second);
-      built_.erase(built_.begin());
-      finishing_ = true;
-      lock.unlock();
-      finish(chunk);
-      chunk.built = {};
-      lock.lock();
-      finishing_ = false;
-      --unfinished_;
-      taken_ -= chunk.points;
-      changed_.notify_all();
-    }
-  }
-  bool over() const { return thrown_ != nullptr || next == end; }
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::map<std::size_t, Work> built_;  ///< by index; all of these guarded by mutex_, as is `next`
-  std::uint64_t taken_ = 0;            ///< points of all that are not finished
-  std::size_t unfinished_ = 0;
-  bool finishing_ = false;
-  std::exception_ptr thrown_;
 };
 
 /// Hands the points of a bucket to `see(packed bytes)`, a block at a time.
@@ -224,38 +146,36 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& a
     done += all.buckets[next].points;
     tops.push_back(std::move(found[next].top));
   }
-  InOrder chunks;
+  InOrder<Work> chunks;
   chunks.pointsAtOnce = pointsAtOnce;
   chunks.next = next;
   chunks.end = all.buckets.size();
   chunks.size = [&](std::size_t index) { return all.buckets[index].sliced ? 0 : all.buckets[index].points; };
   chunks.begin = [&](std::size_t index) {
     control.checkStop();
-    Work chunk;
-    chunk.extents = walk.next(all.buckets[index]);
-    return chunk;
+    return Work{walk.next(all.buckets[index]), {}};
   };
-  const auto read = [&](const Work& chunk, auto&& see) {
-    const Bucket& bucket = all.buckets[chunk.index];
+  const auto read = [&](const Bucket& bucket, const Work& chunk, auto&& see) {
     readPoints(frame, bucket, all.sets[bucket.set].grid, chunk.extents, work.spill, control, see);
   };
-  chunks.build = [&](Work& chunk) {
-    const Bucket& bucket = all.buckets[chunk.index];
+  chunks.build = [&](std::size_t index, Work& chunk) {
+    const Bucket& bucket = all.buckets[index];
     if (bucket.sliced) return;  // too large for one piece, and for any order but its own
     std::vector<std::byte> points;
     points.reserve(bucket.points * frame.format.stride());
-    read(chunk, [&](std::span<const std::byte> block) { points.insert(points.end(), block.begin(), block.end()); });
+    read(bucket, chunk,
+         [&](std::span<const std::byte> block) { points.insert(points.end(), block.begin(), block.end()); });
     std::unique_ptr<ChunkScratch> scratch = scratches.lend();
     chunk.built = buildChunk(frame, bucket.cell, std::move(points), *scratch);
     scratches.giveBack(std::move(scratch));
   };
-  chunks.finish = [&](Work& chunk) {
-    const Bucket& bucket = all.buckets[chunk.index];
+  chunks.finish = [&](std::size_t index, Work& chunk) {
+    const Bucket& bucket = all.buckets[index];
     ChunkRecord record;
-    record.index = chunk.index;
+    record.index = index;
     if (bucket.sliced) {
       SliceBuilder slices(frame, bucket.cell, bucket.points);
-      read(chunk, [&](std::span<const std::byte> block) { sink.write(slices.add(block)); });
+      read(bucket, chunk, [&](std::span<const std::byte> block) { sink.write(slices.add(block)); });
       chunk.built = {{}, slices.takeTopPoints(), slices.takeTopChildren()};
     }
     record.top = {bucket.cell, work.spill.put(chunk.built.topPoints), std::move(chunk.built.topChildren)};
@@ -266,7 +186,7 @@ std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& a
     tops.push_back(std::move(record.top));
     control.progress({stage::kBuild, done += bucket.points, frame.info.points});
   };
-  chunks.run(static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(options.threads), chunks.end - next + 1)));
+  chunks.run(static_cast<std::size_t>(options.threads));
   return tops;
 }
 

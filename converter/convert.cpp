@@ -305,7 +305,7 @@ void buildStore(const Sources& sources, const ConvertOptions& options, const Con
   std::vector<ChunkTop> tops = buildChunks(frame, all, std::move(found), pointsAtOnce, options, work, sink, control);
   all = {};
   clock.begin(stage::kMerge);
-  mergeChunks(frame, std::move(tops), work.spill, sink, control);
+  mergeChunks(frame, std::move(tops), pointsAtOnce, options.threads, work.spill, sink, control);
 
   clock.begin(stage::kWrite);
   Hierarchy hierarchy = sink.finish();

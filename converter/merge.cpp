@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <span>
+#include <utility>
 
 #include "converter/chunk_builder.h"
+#include "converter/in_order.h"
 #include "converter/lod_colour.h"
 
 namespace strata {
@@ -17,12 +20,15 @@ struct OpenNode {
   std::vector<SubtreeShape> children;
 };
 
+using Tops = std::vector<ChunkTop>::iterator;
+
 class Merger {
  public:
-  Merger(const BuildFrame& frame, Spill& spill, NodeSink& sink, const ConvertControl& control)
-      : frame_(frame), stride_(topPointStride(frame)), spill_(spill), sink_(sink), control_(control) {}
+  Merger(const BuildFrame& frame, const Spill& spill, const ConvertControl& control, ChunkScratch& scratch)
+      : frame_(frame), stride_(topPointStride(frame)), spill_(spill), control_(control), scratch_(scratch) {}
 
-  OpenNode merge(NodeKey cell, std::vector<ChunkTop>::iterator first, std::vector<ChunkTop>::iterator last) {
+  /// The top node of a cell, from the tops inside it.
+  OpenNode merge(NodeKey cell, Tops first, Tops last) {
     control_.checkStop();
     if (first->key == cell) {
       OpenNode top{cell, {}, std::move(first->children)};
@@ -39,12 +45,12 @@ class Merger {
     return takeFromChildren(cell, std::move(children));
   }
 
-  /// Writes the node as it is; returns its shape.
+  /// Finishes the node as it is; returns its shape.
   SubtreeShape close(const OpenNode& node) {
     const CellFrame cell(frame_, node.key);
     std::vector<std::int32_t> columns[3];
     const LevelOrder levels =
-        sampleNode(frame_.sampling, localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_);
+        sampleNode(frame_.sampling, localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_.tree);
     Moments moments = cell.world(levels.moments);
     for (const SubtreeShape& child : node.children) moments.add(child.moments);
     NodePoints points;
@@ -52,12 +58,12 @@ class Merger {
     if (frame_.averages() && !node.children.empty())
       for (const std::uint32_t i : levels.order)
         points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);
-    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children, encodeScratch_);
-    std::vector<BuiltNode> one;
-    one.push_back(std::move(finished.node));
-    sink_.write(std::move(one));
+    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children, scratch_.encode);
+    finished_.push_back(std::move(finished.node));
     return finished.shape;
   }
+  /// The nodes finished since the last call, in order.
+  std::vector<BuiltNode> takeFinished() { return std::exchange(finished_, {}); }
 
  private:
   /// The own points of all `nodes`, one after the other, in `columns`.
@@ -74,14 +80,14 @@ class Merger {
     // Half at most, so that a chain of only children does not empty the lower ones.
     const std::size_t capacity =
         std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(points.count() / 2, 1));
-    const LevelOrder levels = sampleNode(frame_.sampling, points, capacity, scratch_);
+    const LevelOrder levels = sampleNode(frame_.sampling, points, capacity, scratch_.tree);
     std::vector<Represented> represented;
     if (frame_.averages()) {
       std::vector<Represented> all;
       for (const OpenNode& child : children)
         for (std::size_t at = 0; at < child.points.size(); at += stride_)
           all.push_back(representedAt(child.points.data() + at));
-      represented = averaged(representedBy(scratch_, all.size(), levels.order), levels.order.size(),
+      represented = averaged(representedBy(scratch_.tree, all.size(), levels.order), levels.order.size(),
                              [&](std::size_t i) { return all[i]; });
     }
     OpenNode parent{key, std::vector<std::byte>(levels.order.size() * stride_), {}};
@@ -118,19 +124,83 @@ class Merger {
 
   const BuildFrame& frame_;
   const std::size_t stride_;
-  Spill& spill_;
-  NodeSink& sink_;
+  const Spill& spill_;
   const ConvertControl& control_;
-  TreeScratch scratch_;
-  EncodeScratch encodeScratch_;
+  ChunkScratch& scratch_;
+  std::vector<BuiltNode> finished_;
+};
+
+/// A cell and the tops inside it.
+struct Group {
+  NodeKey cell;
+  Tops first, last;
+
+  std::uint64_t bytes() const {
+    std::uint64_t bytes = 0;
+    for (Tops top = first; top != last; ++top) bytes += top->points.bytes;
+    return bytes;
+  }
+};
+
+/// The largest cells that hold a few tops each, in Morton order.
+void findGroups(NodeKey cell, Tops first, Tops last, std::vector<Group>& groups) {
+  constexpr std::ptrdiff_t kMostTops = 16;
+  if (first == last) return;
+  if (last - first <= kMostTops) {
+    groups.push_back({cell, first, last});
+    return;
+  }
+  for (int octant = 0; octant < 8; ++octant) {
+    const NodeKey child = cell.child(octant);
+    const auto end = std::find_if(first, last, [&](const ChunkTop& t) { return !child.isAncestorOf(t.key); });
+    findGroups(child, first, end, groups);
+    first = end;
+  }
+}
+
+struct MergedGroup {
+  OpenNode top;
+  std::vector<BuiltNode> nodes;
 };
 
 }  // namespace
 
-void mergeChunks(const BuildFrame& frame, std::vector<ChunkTop> tops, Spill& spill, NodeSink& sink,
-                 const ConvertControl& control) {
-  Merger merger(frame, spill, sink, control);
-  merger.close(merger.merge(NodeKey{}, tops.begin(), tops.end()));
+void mergeChunks(const BuildFrame& frame, std::vector<ChunkTop> tops, std::uint64_t pointsAtOnce, int threads,
+                 Spill& spill, NodeSink& sink, const ConvertControl& control) {
+  ScratchPool scratches;
+  for (bool root = false; !root;) {
+    std::vector<Group> groups;
+    findGroups(NodeKey{}, tops.begin(), tops.end(), groups);
+    root = groups.size() == 1;
+    std::vector<ChunkTop> merged;
+    InOrder<MergedGroup> cells;
+    cells.pointsAtOnce = pointsAtOnce;
+    cells.end = groups.size();
+    cells.size = [&](std::size_t index) { return groups[index].bytes() / topPointStride(frame); };
+    cells.begin = [](std::size_t) { return MergedGroup{}; };
+    cells.build = [&](std::size_t index, MergedGroup& out) {
+      const Group& group = groups[index];
+      if (!root && group.last - group.first == 1) return;
+      std::unique_ptr<ChunkScratch> scratch = scratches.lend();
+      Merger merger(frame, spill, control, *scratch);
+      out.top = merger.merge(group.cell, group.first, group.last);
+      if (root) merger.close(out.top);
+      out.nodes = merger.takeFinished();
+      scratches.giveBack(std::move(scratch));
+    };
+    cells.finish = [&](std::size_t index, MergedGroup& out) {
+      const Group& group = groups[index];
+      sink.write(std::move(out.nodes));
+      if (root) return;
+      if (group.last - group.first == 1) {
+        merged.push_back(std::move(*group.first));
+        return;
+      }
+      merged.push_back({group.cell, spill.put(out.top.points), std::move(out.top.children)});
+    };
+    cells.run(static_cast<std::size_t>(threads));
+    tops = std::move(merged);
+  }
 }
 
 }  // namespace strata
