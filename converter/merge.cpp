@@ -144,7 +144,7 @@ struct Group {
 
 /// The largest cells that hold a few tops each, in Morton order.
 void findGroups(NodeKey cell, Tops first, Tops last, std::vector<Group>& groups) {
-  constexpr std::ptrdiff_t kMostTops = 16;
+  constexpr std::ptrdiff_t kMostTops = 8;  // fewer, and a cell with a chunk in each octant could not be merged
   if (first == last) return;
   if (last - first <= kMostTops) {
     groups.push_back({cell, first, last});
