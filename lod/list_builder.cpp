@@ -182,6 +182,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, std::optional
     out.list.pointCount += points;
   }
   found_.clear();
+  result.requests = static_cast<std::uint32_t>(requests.size());
   return result;
 }
 

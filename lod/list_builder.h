@@ -27,6 +27,7 @@ class ListBuilder {
     std::uint32_t resident = 0;      ///< wanted nodes that are in memory
     std::uint32_t absent = 0;        ///< wanted nodes that are not
     std::uint32_t overCapacity = 0;  ///< wanted, but the cache is too small to ever hold them beside the more urgent
+    std::uint32_t requests = 0;      ///< for this view, without what lookAhead() adds
     std::uint32_t waiting = 0;       ///< failed, and not yet to be tried again ...
     FailedNodes::Clock::time_point retryAt = FailedNodes::Clock::time_point::max();  ///< ... before this
   };

@@ -31,7 +31,7 @@ Streamer::Streamer(std::shared_ptr<const Store> store, const StreamerOptions& op
       lookAhead_(options.lookAhead),
       cache_(options.cacheBytes, index_.parent),
       failed_(options.firstRetry),
-      builder_(*store_, index_.parent, options.leastPrecision, cache_) {
+      pass_(*store_, index_, options.leastPrecision, cache_, depth_) {
   newest_.selection = options.selection;
   for (std::size_t i = 0; i < buffers_; ++i) transfer_.giveEmpty(std::make_unique<StreamedNode>());
   const auto lane = [&](const std::string& name) {
@@ -85,7 +85,7 @@ bool Streamer::complete() const {
   return viewKnown_ && doneGeneration_ == newest_.generation && !donePending_;
 }
 
-Streamer::Task Streamer::newestTask() const {
+LodTask Streamer::newestTask() const {
   const std::lock_guard lock(mutex_);
   return newest_;
 }
@@ -142,7 +142,7 @@ StreamerStats Streamer::stats() const {
 void Streamer::lodLoop(std::stop_token stop) {
   std::uint64_t lastGeneration = 0;
   while (true) {
-    Task task;
+    LodTask task;
     {
       std::unique_lock lock(mutex_);
       const auto hasWork = [&] { return viewKnown_ && (newest_.generation != lastGeneration || nodesChanged_); };
@@ -159,62 +159,16 @@ void Streamer::lodLoop(std::stop_token stop) {
   }
 }
 
-const CoarseDepth* Streamer::fillCoarseDepth(const Task& task) {
-  const OcclusionOptions& options = task.selection.occlusion;
-  if (!options.enabled) return nullptr;
-  CoarseDepth& depth = *backDepth_;
-  depth.clear(task.view, options);
-  // Occluders are of the nodes drawn last and still resident, put where the new view sees them.
-  cache_.pin(builder_.drawn(), occluding_, occludingPins_);
-  std::erase(occluding_, nullptr);
-  const auto apparentSize = [&task](const NodeCache::Data& node) {
-    const OccluderSet& set = node->occluding;
-    return set.cellSide * set.cellSide / glm::dot(set.origin - task.view.eye, set.origin - task.view.eye);
-  };
-  std::sort(occluding_.begin(), occluding_.end(),
-            [&](const NodeCache::Data& a, const NodeCache::Data& b) { return apparentSize(a) > apparentSize(b); });
-  for (const NodeCache::Data& node : occluding_) depth.add(node->occluding);
-  depth.finish();
-  occluding_.clear();  // before the pins, as in releaseList()
-  cache_.unpin(occludingPins_, lodReleased_);
-  occludingPins_.clear();
-  lodReleased_.clear();
-
-  counters_.occluders.store(depth.drawn(), std::memory_order_relaxed);
-  const std::lock_guard lock(depthMutex_);
-  std::swap(frontDepth_, backDepth_);
-  return frontDepth_.get();  // which only this thread changes
-}
-
-void Streamer::copyCoarseDepth(std::vector<float>& depths) const {
-  depths.clear();
-  const std::lock_guard lock(depthMutex_);
-  for (int row = 0; row < CoarseDepth::kSide; ++row)
-    for (int column = 0; column < CoarseDepth::kSide; ++column)
-      depths.push_back(static_cast<float>(frontDepth_->depth(column, row)));
-}
-
-void Streamer::runPass(const Task& task, bool isNewView) {
+void Streamer::runPass(const LodTask& task, bool isNewView) {
   const auto start = std::chrono::steady_clock::now();
   TraceScope pass(lodLane_, "LOD pass");
-  TraceScope step(lodLane_, "coarse depth");
-  const CoarseDepth* const depth = fillCoarseDepth(task);
-  step.next("select");
-  selectNodes(store_->hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
-  counters_.occluded.store(selection_.occluded, std::memory_order_relaxed);
-  failed_.copyIfNewer(failures_, failuresVersion_);
-  step.next("build the list");
-  const ListBuilder::Result built = builder_.build(selection_, task.selection.shown, failures_, back_, requests_);
-  back_.list.view = task.view;
+  const LodPass::Result built = pass_.run(task, failed_, back_, requests_, lodLane_);
   back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
-  const bool pending = !requests_.empty() || built.waiting > 0;
   pass.count("nodes", back_.list.items.size());
-  if (task.ahead) {
-    step.next("look ahead");
-    selectNodes(store_->hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
-    builder_.lookAhead(selectionAhead_, failures_, requests_);
-  }
-  step.next("publish");
+  counters_.occluded.store(built.occluded, std::memory_order_relaxed);
+  counters_.occluders.store(built.occluders, std::memory_order_relaxed);
+  const bool pending = built.requests > 0 || built.waiting > 0;
+  TraceScope step(lodLane_, "publish");
   queue_.replace(requests_);
   publish(back_);
 
@@ -273,14 +227,13 @@ void Streamer::loaderLoop(std::stop_token stop, TraceLane* lane) {
 
 /// Repeats the LOD pass's tests for the newest view (Kanzok 2015, 3.2.3).
 bool Streamer::stillWanted(const LoadRequest& request) {
-  const Task task = newestTask();
+  const LodTask task = newestTask();
   const Contour contour = contourOf(store_->hierarchy().nodes[request.node]);
   const double reach = static_cast<double>(index_.reach[request.node]);
   if (request.ahead && task.ahead && contourInView(contour, reach, ViewVolume(*task.ahead))) return true;
   if (!contourInView(contour, reach, ViewVolume(task.view))) return false;
   if (request.node == 0 || !task.selection.occlusion.enabled) return true;
-  const std::lock_guard lock(depthMutex_);
-  return !(frontDepth_->view() == task.view && frontDepth_->hides(contour, reach));
+  return !depth_.hides(task.view, contour, reach);
 }
 
 void Streamer::keepWanted(std::vector<LoadRequest>& requests) {

@@ -14,11 +14,12 @@
 #include "core/render_list.h"
 #include "core/view.h"
 #include "io/store.h"
-#include "lod/coarse_depth.h"
+#include "lod/depth_buffers.h"
 #include "lod/failed_nodes.h"
 #include "lod/hierarchy_index.h"
 #include "lod/list_builder.h"
 #include "lod/load_queue.h"
+#include "lod/lod_pass.h"
 #include "lod/node_cache.h"
 #include "lod/node_loader.h"
 #include "lod/selection.h"
@@ -118,20 +119,11 @@ class Streamer {
   StreamerStats stats() const;
   /// Any thread; for pictures of it. The depths of the newest coarse depth buffer, CoarseDepth::kSide squared, row by
   /// row; infinite where nothing is hidden.
-  void copyCoarseDepth(std::vector<float>& depths) const;
+  void copyCoarseDepth(std::vector<float>& depths) const { depth_.copy(depths); }
 
  private:
-  /// What an LOD pass works on.
-  struct Task {
-    View view;
-    std::optional<View> ahead;
-    SelectionOptions selection;
-    std::uint64_t generation = 0;  ///< counts setView() and setSelection()
-  };
-
   void lodLoop(std::stop_token stop);
-  void runPass(const Task& task, bool isNewView);
-  const CoarseDepth* fillCoarseDepth(const Task& task);
+  void runPass(const LodTask& task, bool isNewView);
   void publish(PinnedList& list);
   void loaderLoop(std::stop_token stop, TraceLane* lane);
   bool stillWanted(const LoadRequest& request);
@@ -144,7 +136,7 @@ class Streamer {
   void recycle();
   void nodesChanged();
   void somethingHappened();
-  Task newestTask() const;
+  LodTask newestTask() const;
   void setTask(const View& view, const std::optional<View>& ahead);
 
   // Constant after construction.
@@ -159,12 +151,13 @@ class Streamer {
   LoadQueue queue_;
   TransferQueues transfer_;
   FailedNodes failed_;
+  DepthBuffers depth_;
 
   // Guarded by mutex_: what the threads tell each other.
   mutable std::mutex mutex_;
   std::condition_variable_any lodWake_;
   std::condition_variable_any progress_;
-  Task newest_;
+  LodTask newest_;
   bool viewKnown_ = false;     ///< setView() has been called
   bool nodesChanged_ = false;  ///< loaded or failed since the last pass began
   FailedNodes::Clock::time_point retryAt_ = FailedNodes::Clock::time_point::max();  ///< when a pass is due by itself
@@ -177,22 +170,11 @@ class Streamer {
   PinnedList ready_;
   bool readyIsNew_ = false;
 
-  // Guarded by depthMutex_: what hides what, for the loaders. The LOD thread fills the other one and swaps them.
-  mutable std::mutex depthMutex_;
-  std::unique_ptr<CoarseDepth> frontDepth_ = std::make_unique<CoarseDepth>();
-
   // Used by the LOD thread.
   TraceLane* lodLane_ = nullptr;
-  Selection selection_;
-  ListBuilder builder_;
+  LodPass pass_;
   PinnedList back_;
   std::vector<LoadRequest> requests_;
-  Selection selectionAhead_;
-  FailedNodes::ByNode failures_;
-  std::uint64_t failuresVersion_ = 0;
-  std::unique_ptr<CoarseDepth> backDepth_ = std::make_unique<CoarseDepth>();
-  std::vector<NodeCache::Data> occluding_;
-  std::vector<NodeCache::Pin> occludingPins_;
   std::vector<NodeCache::Data> lodReleased_;
 
   // Used by the render thread.

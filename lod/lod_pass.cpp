@@ -1,0 +1,59 @@
+#include "lod/lod_pass.h"
+
+#include <algorithm>
+
+#include <glm/glm.hpp>
+
+namespace strata {
+
+LodPass::LodPass(const Store& store, const HierarchyIndex& index, Precision leastPrecision, NodeCache& cache,
+                 DepthBuffers& depth)
+    : store_(store),
+      index_(index),
+      cache_(cache),
+      depth_(depth),
+      builder_(store, index.parent, leastPrecision, cache) {}
+
+const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
+  const OcclusionOptions& options = task.selection.occlusion;
+  if (!options.enabled) return nullptr;
+  CoarseDepth& depth = depth_.back();
+  depth.clear(task.view, options);
+  // Occluders are of the nodes drawn last and still resident, put where the new view sees them.
+  cache_.pin(builder_.drawn(), occluding_, occludingPins_);
+  std::erase(occluding_, nullptr);
+  const auto apparentSize = [&task](const NodeCache::Data& node) {
+    const OccluderSet& set = node->occluding;
+    return set.cellSide * set.cellSide / glm::dot(set.origin - task.view.eye, set.origin - task.view.eye);
+  };
+  std::sort(occluding_.begin(), occluding_.end(),
+            [&](const NodeCache::Data& a, const NodeCache::Data& b) { return apparentSize(a) > apparentSize(b); });
+  for (const NodeCache::Data& node : occluding_) depth.add(node->occluding);
+  depth.finish();
+  occluding_.clear();  // before the pins: an evicted node's memory is used again when nobody else has it
+  cache_.unpin(occludingPins_, released_);
+  occludingPins_.clear();
+  released_.clear();
+  return &depth_.publish();
+}
+
+LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, PinnedList& out,
+                             std::vector<LoadRequest>& requests, TraceLane* lane) {
+  TraceScope step(lane, "coarse depth");
+  const CoarseDepth* const depth = fillCoarseDepth(task);
+  step.next("select");
+  selectNodes(store_.hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
+  failed.copyIfNewer(failures_, failuresVersion_);
+  step.next("build the list");
+  Result result{builder_.build(selection_, task.selection.shown, failures_, out, requests), selection_.occluded,
+                depth != nullptr ? depth->drawn() : 0};
+  out.list.view = task.view;
+  if (task.ahead) {
+    step.next("look ahead");
+    selectNodes(store_.hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
+    builder_.lookAhead(selectionAhead_, failures_, requests);
+  }
+  return result;
+}
+
+}  // namespace strata
