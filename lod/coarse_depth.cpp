@@ -22,20 +22,29 @@ constexpr float kBehind = 1e-5f;
 
 /// Four samples beside each other.
 using Four = float __attribute__((vector_size(16)));
-using FourIndices = std::int32_t __attribute__((vector_size(16)));
+/// One value for each of the rows that are solved together.
+using Rows = float __attribute__((vector_size(kRows * sizeof(float))));
 
-/// line[x] = max(line[x], start + step * x) for x in [begin, end), four at a time.
+/// line[x] = max(line[x], start + step * x) for x in [begin, end), four at a time; the last four overlap those before.
 void raiseSpan(float* line, int begin, int end, float start, float step) {
-  constexpr FourIndices kIndices{0, 1, 2, 3};
-  const Four ramp = Four{0.0f, 1.0f, 2.0f, 3.0f} * step + start;
-  for (int x = begin & ~3; x < end; x += 4) {
-    Four old;
-    std::memcpy(&old, line + x, sizeof old);
-    const Four now = ramp + step * static_cast<float>(x);
-    const FourIndices raised = (now > old) & (kIndices + x >= begin) & (kIndices + x < end);
-    const Four least = raised ? now : old;
-    std::memcpy(line + x, &least, sizeof least);
+  if (end - begin < 4) {
+    for (int x = begin; x < end; ++x) line[x] = std::max(line[x], start + step * static_cast<float>(x));
+    return;
   }
+  const Four ramp = Four{0.0f, 1.0f, 2.0f, 3.0f} * step + start;
+  const auto at = [line](int x) {
+    Four samples;
+    std::memcpy(&samples, line + x, sizeof samples);
+    return samples;
+  };
+  const auto raise = [&](int x, Four old) {
+    const Four now = ramp + step * static_cast<float>(x);
+    const Four most = now > old ? now : old;
+    std::memcpy(line + x, &most, sizeof most);
+  };
+  const Four last = at(end - 4);  // before it is written in part: reading that back at once is slow
+  for (int x = begin; x < end - 4; x += 4) raise(x, at(x));
+  raise(end - 4, last);
 }
 
 }  // namespace
@@ -160,10 +169,9 @@ void CoarseDepth::fill(const Polygon& polygon) {
   firstRow_ = std::min(firstRow_, first);
   lastRow_ = std::max(lastRow_, last);
 
+  constexpr Rows kOrder{0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f};
   for (int row = first; row <= last; row += kRows) {
-    float from[kRows], to[kRows];
-    std::fill(from, from + kRows, 0.0f);
-    std::fill(to, to + kRows, static_cast<float>(kSamples));
+    Rows from = {}, to = Rows{} + static_cast<float>(kSamples);
     for (std::size_t i = 0; i < polygon.corners; ++i) {
       // Inside: (b - a) x (p - a) >= 0, for a polygon that runs clockwise on the screen.
       glm::vec2 a = polygon.corner[i], b = polygon.corner[i + 1 < polygon.corners ? i + 1 : 0];
@@ -171,12 +179,11 @@ void CoarseDepth::fill(const Polygon& polygon) {
       const glm::vec2 d = b - a;
       if (std::abs(d.y) < 1e-6f) continue;  // rows beyond a level edge are not visited
       const float slope = d.x / d.y;
-      const float start = a.x + (static_cast<float>(row) + 0.5f - a.y) * slope;
-      if (d.y > 0.0f) {  // inside is to the left
-        for (int r = 0; r < kRows; ++r) to[r] = std::min(to[r], start + slope * static_cast<float>(r));
-      } else {
-        for (int r = 0; r < kRows; ++r) from[r] = std::max(from[r], start + slope * static_cast<float>(r));
-      }
+      const Rows edge = kOrder * slope + (a.x + (static_cast<float>(row) + 0.5f - a.y) * slope);
+      if (d.y > 0.0f)  // inside is to the left
+        to = edge < to ? edge : to;
+      else
+        from = edge > from ? edge : from;
     }
     // The first sample whose middle is not before `from`, and the first that is beyond `to`.
     int begin[kRows], end[kRows];

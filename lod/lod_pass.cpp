@@ -21,14 +21,15 @@ const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
   depth.clear(task.view, options);
   // Occluders are of the nodes drawn last and still resident, put where the new view sees them.
   cache_.pin(builder_.drawn(), occluding_, occludingPins_);
-  std::erase(occluding_, nullptr);
-  const auto apparentSize = [&task](const NodeCache::Data& node) {
-    const OccluderSet& set = node->occluding;
-    return set.cellSide * set.cellSide / glm::dot(set.origin - task.view.eye, set.origin - task.view.eye);
-  };
-  std::sort(occluding_.begin(), occluding_.end(),
-            [&](const NodeCache::Data& a, const NodeCache::Data& b) { return apparentSize(a) > apparentSize(b); });
-  for (const NodeCache::Data& node : occluding_) depth.add(node->occluding);
+  bySize_.clear();
+  for (const NodeCache::Data& node : occluding_) {
+    if (node == nullptr || node->occluding.occluders.empty()) continue;
+    const glm::dvec3 fromEye = node->occluding.origin - task.view.eye;
+    const double side = node->occluding.cellSide;
+    bySize_.emplace_back(side * side / glm::dot(fromEye, fromEye), &node->occluding);
+  }
+  std::sort(bySize_.begin(), bySize_.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (const auto& [size, set] : bySize_) depth.add(*set);
   depth.finish();
   occluding_.clear();  // before the pins: an evicted node's memory is used again when nobody else has it
   cache_.unpin(occludingPins_, released_);

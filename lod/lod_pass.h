@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/view.h"
@@ -53,6 +54,7 @@ class LodPass {
   FailedNodes::ByNode failures_;
   std::uint64_t failuresVersion_ = 0;
   std::vector<NodeCache::Data> occluding_;
+  std::vector<std::pair<double, const OccluderSet*>> bySize_;  ///< of them, by apparent size
   std::vector<NodeCache::Pin> occludingPins_;
   std::vector<NodeCache::Data> released_;
 };

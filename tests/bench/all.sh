@@ -76,7 +76,7 @@ store() {
   for ((i = 1; i < ${#infos[@]}; i += 2)); do strata-info "${infos[i]}" --json >"$folder/info_$i.json"; infos[i]=$folder/info_$i.json; done
   table planes "${infos[@]}"
 }
-selection() { selection_bench --benchmark_format=json 2>/dev/null | table benchmark nodes Mpoints tested; }
+selection() { selection_bench --benchmark_format=json 2>/dev/null | table benchmark nodes hidden occluders Mpoints tested; }
 streaming() {
   made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
   made_store flown "synthetic:room?points=$FLOWN&seed=1" --node-points 16384

@@ -108,11 +108,12 @@ void passWithout(benchmark::State& state) { pass(state, false); }
 
 BENCHMARK(passWithOcclusion)
     ->Args({2, 18})
-    ->Args({20, 18})
-    ->Args({60, 18})
-    ->Args({20, 60})
+    ->Args({2, 200})
+    ->Args({8, 80})
+    ->Args({20, 20})
+    ->Args({60, 20})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(passWithout)->Args({20, 18})->Unit(benchmark::kMillisecond);
+BENCHMARK(passWithout)->Args({20, 20})->Unit(benchmark::kMillisecond);
 
 void indexOfTheHierarchy(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(indexHierarchy(terrain().hierarchy));

@@ -161,6 +161,8 @@ def targets(folder):
     t.judge("cpu, one core", one, 400, 400, " M points/s", True)
     t.judge("cpu, two cores, against GL_POINTS of llvmpipe", two / points if two and points else None, 60, 100, " x", True)
     t.judge("compute32 on llvmpipe against GL_POINTS", compute / points if compute and points else None, 6, 10, " x", True)
+    t.judge("LOD pass of 1000 of 100,000 nodes, with occlusion, CPU",
+            t.find("selection", r"^\| passWithOcclusion/20/20 \| \S+ ms \| (\S+) ms \|"), 3, 1, " ms")
     plain = t.find("streaming", r"^\| plain sequential reading \| (\S+) \|")
     loader = t.find("streaming", r"^\| 4 loaders \| (\S+) \|")
     t.judge("four loaders against plain reading, bytes", 100 * loader / plain if loader and plain else None, 80, 100, " %", True)
