@@ -11,6 +11,7 @@ namespace strata {
 namespace {
 
 constexpr std::uint32_t kMostGroups = 65535;  ///< in one dispatch, which OpenGL guarantees
+constexpr std::uint32_t kSlack = 32;          ///< this part of a pool that is too small stays free, for blocks to fit
 constexpr std::uint32_t kPrintEvery = 16;     ///< point whose first word the fingerprint takes in
 
 std::uint64_t largestBlock(const GlFunctions& gl) {
@@ -46,6 +47,25 @@ std::size_t batchIndex(const NodeData& node, std::uint32_t firstPoint) {
   return static_cast<std::size_t>(after - node.batches.begin()) - 1;
 }
 
+/// By index: the place, in the same band.
+std::vector<std::uint32_t> permutation(const std::vector<PoolTurn::Band>& bands, Shuffle shuffle, std::uint32_t key,
+                                       const ThreadPool& threads) {
+  std::vector<std::uint32_t> places(bands.back().end);
+  for (const PoolTurn::Band& band : bands) {
+    const std::uint32_t size = band.end - band.first;
+    const KeyedShuffle keyed(size, key++);
+    const int iterations = perfectShuffles(size);
+    threads.parallelFor(size, 1u << 16, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) {
+        const auto index = static_cast<std::uint32_t>(i);
+        places[band.first + i] =
+            band.first + (shuffle == Shuffle::keyed ? keyed(index) : perfectShuffle(index, size, iterations));
+      }
+    });
+  }
+  return places;
+}
+
 }  // namespace
 
 PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle shuffle, std::uint32_t key,
@@ -53,6 +73,7 @@ PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle
     : gl_(functions),
       groupSize_(groupSize),
       manager_(roomFor(functions, points, shuffle)),
+      turn_(size(), shuffle == Shuffle::keyed ? PoolTurn::kBands : 1),
       insert_(functions, poolStages("pool_insert.comp", groupSize)),
       fetch_(functions, poolStages("pool_fetch.comp", groupSize)),
       permutation_(functions, std::uint64_t{size()} * 4, gl::kStaticDraw),
@@ -66,15 +87,7 @@ PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle
     pages_.push_back(std::make_unique<GlBuffer>(gl_, room * sizeof(glm::uvec4), gl::kDynamicCopy));
     pages_.back()->fill(STRATA_NO_POINT);
   }
-  std::vector<std::uint32_t> places(size());
-  const KeyedShuffle keyed(size(), key);
-  const int iterations = perfectShuffles(size());
-  threads.parallelFor(size(), 1u << 16, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      const auto index = static_cast<std::uint32_t>(i);
-      places[i] = shuffle == Shuffle::keyed ? keyed(index) : perfectShuffle(index, size(), iterations);
-    }
-  });
+  const std::vector<std::uint32_t> places = permutation(turn_.bands(), shuffle, key, threads);
   permutation_.write(0, places.data(), places.size() * 4);
   if (gl_.GetError() != 0)
     throw Error("OpenGL", "no memory for a point pool of " + std::to_string(size()) + " points, " +
@@ -129,61 +142,89 @@ PointPool::Node& PointPool::nodeOf(const std::shared_ptr<const NodeData>& data) 
 void PointPool::beginFrame() {
   ++frame_;
   manager_.beginFrame();
-  while (!dead_.empty() && dead_.front().until <= turned_) {
-    freeSlots_.push_back(dead_.front().slot);
-    dead_.pop_front();
-  }
+  turn_.beginFrame(freeSlots_);
   std::erase_if(known_, [](const auto& entry) { return entry.second.node.expired(); });
   std::erase_if(nodes_, [](const auto& entry) { return entry.second.held == 0; });
   pieces_.assign(std::max<std::size_t>(slots_.size(), 1), {});
-  for (const Dead& dead : dead_) pieces_[dead.slot].flags = STRATA_PIECE_DEAD;
+  for (const auto& [slot, bands] : turn_.ghosts()) pieces_[slot].flags = STRATA_PIECE_DEAD;
   staged_.clear();
   inserts_.clear();
-  missing_.clear();
+  wanted_.clear();
+}
+
+void PointPool::findWanted(const RenderList& list, const DrawPlan& plan) {
+  Node* node = nullptr;
+  for (std::size_t b = 0; b < plan.batches.size(); ++b) {
+    const PlannedBatch& batch = plan.batches[b];
+    if (b == 0 || batch.item != plan.batches[b - 1].item) node = &nodeOf(list.items[batch.item].node);
+    const std::size_t index = batchIndex(*batch.node, batch.firstPoint);
+    const std::uint32_t whole = batch.node->batches[index].pointCount;
+    std::uint32_t piece = node->firstPiece[index];
+    const auto seen = static_cast<float>(list.items[batch.item].pointCount);
+    for (std::uint32_t first = 0; first < batch.pointCount; first += kPiecePoints, ++piece)
+      wanted_.push_back({node, &batch, piece, first, std::min(kPiecePoints, whole - first),
+                         static_cast<float>(batch.firstPoint + first) / seen});
+  }
+}
+
+/// Puts what the pool has room for in front. Returns how much of wanted_ that is.
+std::size_t PointPool::fitting() {
+  std::uint64_t points = 0;
+  for (const Wanted& wanted : wanted_) points += wanted.points;
+  if (points <= size()) return wanted_.size();
+  std::stable_sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) { return a.part < b.part; });
+  std::uint64_t left = size() - size() / kSlack;
+  const auto end = std::find_if(wanted_.begin(), wanted_.end(), [&left](const Wanted& wanted) {
+    if (wanted.points > left) return true;
+    left -= wanted.points;
+    return false;
+  });
+  return static_cast<std::size_t>(end - wanted_.begin());
+}
+
+/// Whether a piece of the pool lacks planes or classes that its node has by now.
+bool PointPool::isOld(const Wanted& wanted, bool classes) const {
+  const Slot& slot = slots_[wanted.node->slots[wanted.piece]];
+  return slot.planes < static_cast<int>(wanted.batch->precision) ||
+         (classes && !slot.classes && !wanted.batch->node->classification.empty());
 }
 
 PoolFrame PointPool::show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints) {
   beginFrame();
   PoolFrame result;
   std::vector<bool> incomplete(list.items.size());
-  Node* node = nullptr;
-  for (std::size_t b = 0; b < plan.batches.size(); ++b) {
-    const PlannedBatch& batch = plan.batches[b];
-    if (b == 0 || batch.item != plan.batches[b - 1].item) node = &nodeOf(list.items[batch.item].node);
-    std::uint32_t piece = node->firstPiece[batchIndex(*batch.node, batch.firstPoint)];
-    for (std::uint32_t first = 0; first < batch.pointCount; first += kPiecePoints, ++piece) {
-      const std::uint32_t slot = node->slots[piece];
-      bool old = false;
-      if (slot != kNoSlot) {
-        manager_.shown(slots_[slot].block);
-        setPiece(slot, batch, first);
-        old = slots_[slot].planes < static_cast<int>(batch.precision) ||
-              (classes && !slots_[slot].classes && !batch.node->classification.empty());
-      }
-      if (slot == kNoSlot || old) missing_.push_back({node, &batch, piece, first});
+  findWanted(list, plan);
+  const std::size_t fits = fitting();
+  std::vector<const Wanted*> missing;
+  for (std::size_t w = 0; w < wanted_.size(); ++w) {
+    const Wanted& wanted = wanted_[w];
+    const std::uint32_t slot = wanted.node->slots[wanted.piece];
+    if (slot != kNoSlot) {
+      setPiece(slot, *wanted.batch, wanted.first);
+      if (w < fits) manager_.shown(slots_[slot].block);
+    }
+    if (w >= fits) {
+      incomplete[wanted.batch->item] = true;
+    } else if (slot == kNoSlot || isOld(wanted, classes)) {
+      missing.push_back(&wanted);
     }
   }
-  std::stable_sort(missing_.begin(), missing_.end(),
-                   [](const Missing& a, const Missing& b) { return a.piece < b.piece; });
+  std::stable_sort(missing.begin(), missing.end(), [](const Wanted* a, const Wanted* b) { return a->part < b->part; });
   bool full = false;
-  for (const Missing& missing : missing_) {
-    const NodeData& data = *missing.batch->node;
-    const Batch& whole = data.batches[batchIndex(data, missing.batch->firstPoint)];
-    const std::uint32_t points = std::min(kPiecePoints, whole.pointCount - missing.first);
-    const bool within = staged_.empty() || staged_.size() + points <= mostPoints;
-    const std::uint32_t slot = missing.node->slots[missing.piece];
-    if (!within || (slot == kNoSlot && (full || !makeRoom(missing, points)))) {
+  for (const Wanted* piece : missing) {
+    const bool within = staged_.empty() || staged_.size() + piece->points <= mostPoints;
+    const bool isNew = piece->node->slots[piece->piece] == kNoSlot;
+    if (!within || (isNew && (full || !makeRoom(*piece)))) {
       full = full || within;
-      incomplete[missing.batch->item] = true;
+      incomplete[piece->batch->item] = true;
       continue;
     }
-    const std::uint32_t now = missing.node->slots[missing.piece];
-    stage(data, whole.firstPoint + missing.first, points, now);
-    setPiece(now, *missing.batch, missing.first);
-    if (slot != kNoSlot) {
-      pieces_[now].flags |= STRATA_PIECE_WRITTEN;
-      result.rewritten = true;
-    }
+    const std::uint32_t slot = piece->node->slots[piece->piece];
+    stage(*piece->batch, piece->first, piece->points, slot);
+    setPiece(slot, *piece->batch, piece->first);
+    if (isNew) continue;
+    pieces_[slot].flags |= STRATA_PIECE_WRITTEN;
+    result.rewritten = true;
   }
   result.nodesMissing = static_cast<std::uint32_t>(std::count(incomplete.begin(), incomplete.end(), true));
   result.pointsWritten = staged_.size();
@@ -192,7 +233,7 @@ PoolFrame PointPool::show(const RenderList& list, const DrawPlan& plan, bool cla
 }
 
 /// A slot and a block for a piece. False where there is none.
-bool PointPool::makeRoom(const Missing& missing, std::uint32_t points) {
+bool PointPool::makeRoom(const Wanted& missing) {
   if (freeSlots_.empty()) {
     if (slots_.size() >= kNoSlot) return false;
     freeSlots_.push_back(static_cast<std::uint32_t>(slots_.size()));
@@ -200,7 +241,7 @@ bool PointPool::makeRoom(const Missing& missing, std::uint32_t points) {
     pieces_.resize(slots_.size());
   }
   const std::uint32_t slot = freeSlots_.back();
-  const auto block = manager_.allocate(points, slot, [this](std::uint32_t gone) { free(gone); });
+  const auto block = manager_.allocate(missing.points, slot, [this](std::uint32_t gone) { free(gone); });
   if (!block) return false;
   freeSlots_.pop_back();
   slots_[slot] = {missing.node, missing.piece, *block, 0, false};
@@ -210,16 +251,19 @@ bool PointPool::makeRoom(const Missing& missing, std::uint32_t points) {
 }
 
 void PointPool::free(std::uint32_t slot) {
+  const PoolBlock& block = *slots_[slot].block;
+  turn_.freed(slot, block.first, block.size);
   Node& node = *slots_[slot].node;
   node.slots[slots_[slot].piece] = kNoSlot;
   --node.held;
   slots_[slot] = {};
   pieces_[slot] = {};
   pieces_[slot].flags = STRATA_PIECE_DEAD;
-  dead_.push_back({slot, turned_ + size()});
 }
 
-void PointPool::stage(const NodeData& data, std::uint32_t firstPoint, std::uint32_t count, std::uint32_t slot) {
+void PointPool::stage(const PlannedBatch& batch, std::uint32_t first, std::uint32_t count, std::uint32_t slot) {
+  const NodeData& data = *batch.node;
+  const std::uint32_t firstPoint = batch.firstPoint + first;
   slots_[slot].planes = data.loadedPlanes();
   slots_[slot].classes = !data.classification.empty();
   inserts_.push_back({slots_[slot].block->first, count, static_cast<std::uint32_t>(staged_.size()), 0});
@@ -248,6 +292,7 @@ void PointPool::setPiece(std::uint32_t slot, const PlannedBatch& batch, std::uin
     piece.shifts |= static_cast<std::uint32_t>(shift + 128) << (8 * axis);
   }
   piece.offset.w = static_cast<int>(batch.firstId + first);
+  turn_.shown(piece.first, slots_[slot].block->size);
 }
 
 void PointPool::bindPool() {

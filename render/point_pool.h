@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <deque>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -9,6 +8,7 @@
 #include "render/batch_plan.h"
 #include "render/gl_objects.h"
 #include "render/pool_manager.h"
+#include "render/pool_turn.h"
 #include "render/shader_variant.h"
 #include "render/shaders/shader_types.h"
 #include "render/thread_pool.h"
@@ -16,8 +16,8 @@
 namespace strata {
 
 enum class Shuffle : std::uint8_t {
-  keyed,   ///< KeyedShuffle: any size, no pattern
-  perfect  ///< perfectShuffle(): Rumpler's; an odd size loses a point
+  keyed,   ///< KeyedShuffle, within each band of the pool: any size, no pattern
+  perfect  ///< perfectShuffle(): Rumpler's, of the whole pool; an odd size loses a point
 };
 
 /// What one frame wants of the pool and what came of it.
@@ -41,16 +41,19 @@ class PointPool {
   PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle shuffle, std::uint32_t key,
             std::uint32_t groupSize, const ThreadPool& threads);
 
-  /// Takes what `plan` of `list` shows into the pool, at most `mostPoints` now (a first piece always passes), what is
-  /// first in its node before what is later. `classes`: they are needed.
+  /// Takes what `plan` of `list` shows into the pool, at most `mostPoints` now (a first piece always passes), the first
+  /// parts of all nodes before later ones. Where the view shows more than the pool holds, the last parts of all nodes
+  /// stay out, as large a share of each: they give way to the first part of a node that comes into view, and are drawn
+  /// as long as nothing does. `classes`: they are needed.
   PoolFrame show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints);
-  /// The fill pass has gone over so many places more.
-  void turned(std::uint64_t points) { turned_ += points; }
+  /// Which places the fill pass meets next; of pages, see below.
+  PoolTurn& turn() { return turn_; }
+  const PoolTurn& turn() const { return turn_; }
 
   std::uint32_t size() const { return manager_.size(); }
   std::uint32_t pagePoints() const { return pagePoints_; }
   const PoolManager& manager() const { return manager_; }
-  std::uint32_t ghostPieces() const { return static_cast<std::uint32_t>(dead_.size()); }
+  std::uint32_t ghostPieces() const { return static_cast<std::uint32_t>(turn_.ghosts().size()); }
   std::uint64_t gpuBytes() const;
 
   void bindPage(std::uint32_t page, unsigned binding) const { pages_[page]->bindStorage(binding); }
@@ -78,19 +81,24 @@ class PointPool {
     std::weak_ptr<const NodeData> node;
     std::uint64_t print;
   };
-  struct Missing {
+  struct Wanted {
     Node* node;
     const PlannedBatch* batch;
     std::uint32_t piece;
-    std::uint32_t first;  ///< within the batch
+    std::uint32_t first;   ///< within the batch
+    std::uint32_t points;  ///< of the whole piece
+    float part;            ///< of what is seen of the node, that comes before it
   };
 
   void beginFrame();
+  void findWanted(const RenderList& list, const DrawPlan& plan);
+  std::size_t fitting();
+  bool isOld(const Wanted& wanted, bool classes) const;
   std::uint64_t fingerprint(const std::shared_ptr<const NodeData>& node);
   Node& nodeOf(const std::shared_ptr<const NodeData>& node);
-  bool makeRoom(const Missing& missing, std::uint32_t points);
+  bool makeRoom(const Wanted& missing);
   void free(std::uint32_t slot);
-  void stage(const NodeData& data, std::uint32_t firstPoint, std::uint32_t count, std::uint32_t slot);
+  void stage(const PlannedBatch& batch, std::uint32_t first, std::uint32_t count, std::uint32_t slot);
   void setPiece(std::uint32_t slot, const PlannedBatch& batch, std::uint32_t first);
   void upload();
   void bindPool();
@@ -99,6 +107,7 @@ class PointPool {
   const std::uint32_t groupSize_;
   std::uint32_t pagePoints_ = 0;
   PoolManager manager_;
+  PoolTurn turn_;
   GlProgram insert_, fetch_;
   std::vector<std::unique_ptr<GlBuffer>> pages_;
   GlBuffer permutation_, staging_, insertBuffer_, pieceBuffer_;
@@ -106,16 +115,11 @@ class PointPool {
   std::unordered_map<const NodeData*, Known> known_;
   std::vector<Slot> slots_;
   std::vector<std::uint32_t> freeSlots_;
-  struct Dead {
-    std::uint32_t slot;
-    std::uint64_t until;  ///< of turned_
-  };
-  std::deque<Dead> dead_;
   std::vector<shader::PoolPiece> pieces_;
   std::vector<glm::uvec4> staged_;
   std::vector<shader::PoolInsert> inserts_;
-  std::vector<Missing> missing_;
-  std::uint64_t frame_ = 0, turned_ = 0;
+  std::vector<Wanted> wanted_;
+  std::uint64_t frame_ = 0;
 };
 
 }  // namespace strata

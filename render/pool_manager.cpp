@@ -59,9 +59,8 @@ std::optional<PoolManager::Block> PoolManager::allocate(std::uint32_t size, std:
     if (victims_.empty()) return std::nullopt;
     const Block victim = victims_.back();
     victims_.pop_back();
-    const std::uint32_t gone = victim->owner;
+    freed(victim->owner);
     release(victim);
-    freed(gone);
     block = firstFit(size);
   }
   if (block->size > size) {

@@ -31,7 +31,8 @@ class PoolManager {
   /// Every block loses importance. Those that this frame shows are to be shown() before allocate() is called.
   void beginFrame();
   void shown(Block block);
-  /// Takes `size`, at least 1, for `owner`; counts as shown. `freed` is told the owner of each block that has to go.
+  /// Takes `size`, at least 1, for `owner`; counts as shown. `freed` is told the owner of each block that has to go,
+  /// before it goes.
   /// None where the blocks that are shown leave too little room, or, when all others are gone, too little in one piece.
   std::optional<Block> allocate(std::uint32_t size, std::uint32_t owner,
                                 const std::function<void(std::uint32_t owner)>& freed);

@@ -110,7 +110,7 @@ class Progressive final : public ProgressiveRasterizer {
     stats.bytesUploaded = shown.pointsWritten * sizeof(glm::uvec4);
     stats.uploadMs = watch.lapMs();
     const std::uint64_t key = pictureKey(view, options, plan_);
-    if (key != key_ || shown.pointsWritten > 0) pending_ = points_.size();
+    if (key != key_ || shown.pointsWritten > 0) points_.turn().restart();
     key_ = key;
     beginPixels(view);
     try {
@@ -122,7 +122,7 @@ class Progressive final : public ProgressiveRasterizer {
     }
     gl_.UseProgram(0);
     stats.drawMs = watch.lapMs();
-    stats.pointsPending = pixels_ > 0 ? pending_ : 0;
+    stats.pointsPending = pixels_ > 0 ? points_.turn().pending() : 0;
     stats.gpuBytes = points_.gpuBytes() + 2 * kept_[0].bytes() + candidates_.bytes();
     resolveFrame(list, view, options, buffer_, threads_, frame);
     stats.resolveMs = watch.lapMs();
@@ -135,7 +135,7 @@ class Progressive final : public ProgressiveRasterizer {
   void forget() {
     kept_[source_].fill(STRATA_NO_POINT);
     covered_ = 0;
-    pending_ = points_.size();
+    points_.turn().restart();
   }
 
   void beginPixels(const View& view) {
@@ -158,17 +158,17 @@ class Progressive final : public ProgressiveRasterizer {
     forget();
   }
 
-  /// The next `count` places of the pool, page by page; the cursor goes on.
+  /// The next `count` places of the pool, page by page.
   std::vector<Range> nextRanges(std::uint64_t count) {
     std::vector<Range> ranges;
-    while (count > 0) {
-      const std::uint32_t page = cursor_ / points_.pagePoints(), first = cursor_ % points_.pagePoints();
-      const std::uint64_t left = std::min(points_.pagePoints() - first, points_.size() - cursor_);
-      const auto now = static_cast<std::uint32_t>(std::min<std::uint64_t>(count, left));
-      ranges.push_back({page, first, first + now});
-      count -= now;
-      cursor_ = cursor_ + now == points_.size() ? 0 : cursor_ + now;
-    }
+    const std::uint32_t pagePoints = points_.pagePoints();
+    for (const PoolTurn::Band& band : points_.turn().next(count))
+      for (std::uint32_t first = band.first; first < band.end;) {
+        const std::uint32_t page = first / pagePoints, start = page * pagePoints;
+        const std::uint32_t end = band.end - start <= pagePoints ? band.end : start + pagePoints;
+        ranges.push_back({page, first - start, end - start});
+        first = end;
+      }
     return ranges;
   }
 
@@ -180,10 +180,8 @@ class Progressive final : public ProgressiveRasterizer {
   void drawOnGpu(const DrawOptions& options, bool rewritten, DrawStats& stats) {
     const ShaderVariant variant{1, !options.clip.empty(), !options.classes.all()};
     const auto pixels = static_cast<std::uint32_t>(pixels_);
-    stats_.filled = std::min(options_.pointsPerFrame, pending_);
+    stats_.filled = std::min(options_.pointsPerFrame, points_.turn().pending());
     const std::vector<Range> ranges = nextRanges(stats_.filled);
-    pending_ -= stats_.filled;
-    points_.turned(stats_.filled);
     std::uint64_t words = groupsFor(pixels);
     for (const Range& range : ranges) words += groupsFor(range.end - range.first);
     candidates_.reserve(words * groupSize_ * 4);
@@ -297,7 +295,7 @@ class Progressive final : public ProgressiveRasterizer {
 
   void report(const DrawStats& stats, const PoolFrame& shown) {
     stats_.written = shown.pointsWritten;
-    stats_.cursor = cursor_;
+    stats_.turnPlaces = points_.turn().places();
     stats_.uploadMs = stats.uploadMs;
     stats_.resolveMs = stats.resolveMs;
     stats_.poolFree = points_.manager().freePoints();
@@ -335,11 +333,9 @@ class Progressive final : public ProgressiveRasterizer {
   std::vector<std::uint32_t> hostDepths_, hostIds_;
   ProgressiveStats stats_;
   std::uint64_t key_ = 0;
-  std::uint64_t pending_ = 0;     ///< places that this picture has not met
   std::uint64_t covered_ = 0;     ///< pixels of the last frame that have a point
   std::uint64_t mostPixels_ = 0;  ///< that a storage block holds
   std::size_t pixels_ = 0;        ///< of this frame; 0: nothing is drawn
-  std::uint32_t cursor_ = 0;
   bool warned_ = false;
 };
 

@@ -24,7 +24,7 @@ struct ProgressiveStats {
   std::uint64_t reprojected = 0;  ///< pixels that had a point
   std::uint64_t filled = 0;       ///< places gone over
   std::uint64_t written = 0;      ///< points put into the pool
-  std::uint64_t cursor = 0;       ///< place at which the next frame goes on
+  std::uint64_t turnPlaces = 0;   ///< that a turn goes over
   /// By OpenGL's clock, on the CPU by its own: emptying the pixels; depths of the kept points, of the range of the
   /// pool; lowest ids of both; keeping.
   double clearMs = 0.0, reprojectMs = 0.0, fillMs = 0.0, indexMs = 0.0, keepMs = 0.0;
