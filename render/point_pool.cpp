@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::uint32_t kMostGroups = 65535;  ///< in one dispatch, which OpenGL guarantees
 constexpr std::uint32_t kSlack = 32;          ///< this part of a pool that is too small stays free, for blocks to fit
+constexpr std::uint32_t kCached = 4;          ///< what is shown and this part of it is kept close together
 constexpr std::uint32_t kPrintEvery = 16;     ///< point whose first word the fingerprint takes in
 
 std::uint64_t largestBlock(const GlFunctions& gl) {
@@ -182,6 +183,14 @@ std::size_t PointPool::fitting() {
   return static_cast<std::size_t>(end - wanted_.begin());
 }
 
+/// New pieces come into as little of the pool as the first `fits` of wanted_ need, so that a turn is short.
+void PointPool::limitTo(std::size_t fits) {
+  std::uint64_t points = 0;
+  for (std::size_t w = 0; w < fits; ++w) points += wanted_[w].points;
+  const std::uint64_t band = turn_.bandPlaces(), bands = (points + points / kCached + band - 1) / band;
+  manager_.setLimit(static_cast<std::uint32_t>(std::min<std::uint64_t>(bands * band, size())));
+}
+
 /// Whether a piece of the pool lacks planes or classes that its node has by now.
 bool PointPool::isOld(const Wanted& wanted, bool classes) const {
   const Slot& slot = slots_[wanted.node->slots[wanted.piece]];
@@ -209,6 +218,7 @@ PoolFrame PointPool::show(const RenderList& list, const DrawPlan& plan, bool cla
       missing.push_back(&wanted);
     }
   }
+  limitTo(fits);
   std::stable_sort(missing.begin(), missing.end(), [](const Wanted* a, const Wanted* b) { return a->part < b->part; });
   bool full = false;
   for (const Wanted* piece : missing) {

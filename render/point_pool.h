@@ -93,6 +93,7 @@ class PointPool {
   void beginFrame();
   void findWanted(const RenderList& list, const DrawPlan& plan);
   std::size_t fitting();
+  void limitTo(std::size_t fits);
   bool isOld(const Wanted& wanted, bool classes) const;
   std::uint64_t fingerprint(const std::shared_ptr<const NodeData>& node);
   Node& nodeOf(const std::shared_ptr<const NodeData>& node);

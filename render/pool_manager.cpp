@@ -5,7 +5,7 @@
 
 namespace strata {
 
-PoolManager::PoolManager(std::uint32_t size) : size_(size), free_(size), lowestFree_(blocks_.end()) {
+PoolManager::PoolManager(std::uint32_t size) : size_(size), free_(size), limit_(size), lowestFree_(blocks_.end()) {
   if (size == 0) return;
   blocks_.push_back({0, size});
   lowestFree_ = blocks_.begin();
@@ -28,10 +28,11 @@ void PoolManager::shown(Block block) {
 PoolManager::Block PoolManager::firstFit(std::uint32_t size) {
   bool passed = false;  // a free block that is too small
   for (Block block = lowestFree_; block != blocks_.end(); ++block) {
+    if (block->first >= limit_) return blocks_.end();
     if (!block->free) continue;
     if (!passed) lowestFree_ = block;
     passed = true;
-    if (block->size >= size) return block;
+    if (std::min(block->size, limit_ - block->first) >= size) return block;
   }
   if (!passed) lowestFree_ = blocks_.end();
   return blocks_.end();
@@ -39,7 +40,7 @@ PoolManager::Block PoolManager::firstFit(std::uint32_t size) {
 
 void PoolManager::findVictims() {
   victimsKnown_ = true;
-  for (Block block = blocks_.begin(); block != blocks_.end(); ++block)
+  for (Block block = blocks_.begin(); block != blocks_.end() && block->first < limit_; ++block)
     if (!block->free && block->shown != frame_) victims_.push_back(block);
   std::sort(victims_.begin(), victims_.end(), [](const Block& a, const Block& b) {
     return std::tie(a->importance, a->shown, a->first) > std::tie(b->importance, b->shown, b->first);
@@ -51,8 +52,9 @@ std::optional<PoolManager::Block> PoolManager::allocate(std::uint32_t size, std:
   Block block = firstFit(size);
   if (block == blocks_.end()) {
     if (!victimsKnown_) findVictims();
-    std::uint64_t room = free_;
-    for (const Block& victim : victims_) room += victim->size;
+    std::uint64_t room = 0;
+    for (Block b = blocks_.begin(); b != blocks_.end() && b->first < limit_ && room < size; ++b)
+      if (b->free || b->shown != frame_) room += std::min(b->size, limit_ - b->first);
     if (room < size) return std::nullopt;
   }
   while (block == blocks_.end()) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <list>
@@ -31,6 +32,10 @@ class PoolManager {
   /// Every block loses importance. Those that this frame shows are to be shown() before allocate() is called.
   void beginFrame();
   void shown(Block block);
+  /// What allocate() gives and frees lies below this, so that a view that needs little of the pool finds its blocks
+  /// close together; at first, and at most, all of the pool. To be set before the frame's first allocate().
+  void setLimit(std::uint32_t limit) { limit_ = std::min(limit, size_); }
+  std::uint32_t limit() const { return limit_; }
   /// Takes `size`, at least 1, for `owner`; counts as shown. `freed` is told the owner of each block that has to go,
   /// before it goes.
   /// None where the blocks that are shown leave too little room, or, when all others are gone, too little in one piece.
@@ -47,11 +52,11 @@ class PoolManager {
   Block firstFit(std::uint32_t size);
   void findVictims();
 
-  std::uint32_t size_ = 0, free_ = 0;
+  std::uint32_t size_ = 0, free_ = 0, limit_ = 0;
   std::uint64_t frame_ = 1;
   std::list<PoolBlock> blocks_;
   Block lowestFree_;            ///< no free block lies before it
-  std::vector<Block> victims_;  ///< not shown in this frame, the first to go last; found when first needed
+  std::vector<Block> victims_;  ///< below the limit, not shown in this frame, the first to go last; found when needed
   bool victimsKnown_ = false;
 };
 

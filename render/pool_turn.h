@@ -15,13 +15,14 @@ class PoolTurn {
   struct Band {
     std::uint32_t first = 0, end = 0;  ///< places, and indices: a permutation stays within its band
   };
-  static constexpr std::uint32_t kBands = 16;
+  static constexpr std::uint32_t kBands = 32;
   static constexpr std::uint32_t kLeastBand = 4096;  ///< places
 
   /// One band alone for `bands` 1.
   explicit PoolTurn(std::uint32_t size, std::uint32_t bands = kBands);
 
   std::vector<Band> bands() const;
+  std::uint32_t bandPlaces() const { return bandPlaces_; }  ///< of each but the last
 
   /// Nothing is shown of any band. Appends to `slots` those that freed() took and that have no ghosts any more.
   void beginFrame(std::vector<std::uint32_t>& slots);

@@ -173,7 +173,7 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
       }
       std::printf("| %.1f M | %s | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
                   way.shuffle == Shuffle::keyed ? "keyed" : "perfect", millions(n),
-                  static_cast<double>(rasterizer->progress().poolPoints) / static_cast<double>(n), reached[0],
+                  static_cast<double>(rasterizer->progress().turnPlaces) / static_cast<double>(n), reached[0],
                   reached[1], reached[2]);
       std::fflush(stdout);
     }
@@ -197,30 +197,25 @@ void fillTable(const Scale& scale, const Scene& scene) {
   }
 }
 
-/// Table 4.3: all places of a pool, half of them taken, then all, of which the view shows half.
+/// Table 4.3: half of the points, in a pool that holds nothing else, then between the other half, which was seen
+/// before.
 void halfFullTable(const Scale& scale, const Scene& scene) {
-  RenderList half, rest = scene.list;
-  for (std::size_t i = 0; i < rest.items.size(); ++i)
-    if (i % 2 == 0) {
-      half.items.push_back(rest.items[i]);
-      half.pointCount += rest.items[i].pointCount;
-    }
-  std::erase_if(rest.items, [i = std::size_t{0}](const RenderItem&) mutable { return i++ % 2 == 0; });
-  rest.pointCount -= half.pointCount;
-  const std::uint64_t pool = scene.list.pointCount * 101 / 100;
+  RenderList half;
+  for (std::size_t i = 0; i < scene.list.items.size(); i += 2) {
+    half.items.push_back(scene.list.items[i]);
+    half.pointCount += scene.list.items[i].pointCount;
+  }
+  const std::uint64_t pool = scene.list.pointCount * 11 / 10;
   const auto rasterizer = progressive(pool, pool);
-  fillPool(*rasterizer, half, scene.view);
-  const auto fill = [&] {
-    return 100.0 * (1.0 - static_cast<double>(rasterizer->progress().poolFree) / static_cast<double>(pool));
-  };
   std::printf("\n## Table 4.3: a whole turn in one frame, %.1f M places, %.1f M points shown\n\n", millions(pool),
               millions(half.pointCount));
-  std::printf("| pool | fill, ms | frame, ms |\n|---|---|---|\n");
-  for (const bool full : {false, true}) {
-    if (full) fillPool(*rasterizer, rest, scene.view);
-    const double taken = fill();
+  std::printf("| pool | turn | fill, ms | frame, ms |\n|---|---|---|---|\n");
+  for (const RenderList* before : std::initializer_list<const RenderList*>{&half, &scene.list}) {
+    fillPool(*rasterizer, *before, scene.view);
+    const ProgressiveStats& stats = rasterizer->progress();
+    const double taken = 100.0 * (1.0 - static_cast<double>(stats.poolFree) / static_cast<double>(stats.poolPoints));
     const Times t = timeFrames(*rasterizer, half, scene.view, scale.frames);
-    std::printf("| %.0f %% full | %.1f | %.1f |\n", taken, t.fill, t.frame);
+    std::printf("| %.0f %% full | %.1f M | %.1f | %.1f |\n", taken, millions(stats.turnPlaces), t.fill, t.frame);
     std::fflush(stdout);
   }
 }

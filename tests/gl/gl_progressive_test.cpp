@@ -229,6 +229,77 @@ TEST_F(Progressive, NeverFreesWhatTheViewShows) {
   EXPECT_EQ(progressive_->progress().ghostPieces, 0u);
 }
 
+/// First a half of the nodes fills the pool alone, then they have to share it.
+TEST_F(Progressive, GivesEveryNodeAPartOfAPoolThatIsTooSmall) {
+  STRATA_CREATE({20'000, 5'000, 60'000});
+  const RenderList all = test::makeTown(kUtm, 200.0, 150'000, 16, 3);
+  const View view = viewOfBox(test::boundsOf(all), kDirection, 300, 200, 1.0);
+  const std::vector<RenderItem> half(all.items.begin(), all.items.begin() + all.items.size() / 2);
+  RenderList list;
+  for (const RenderItem& item : half) {
+    list.items.push_back(item);
+    list.pointCount += item.pointCount;
+  }
+  ASSERT_GT(list.pointCount, 60'000u);
+  converge(list, view);
+  converge(all, view);
+  plain_->draw(all, view, {}, expected_);
+  std::vector<std::uint32_t> ends;
+  for (const RenderItem& item : all.items) ends.push_back((ends.empty() ? 0 : ends.back()) + item.pointCount);
+  std::vector<std::size_t> shown(ends.size()), wanted(ends.size());
+  const auto count = [&ends](const Frame& frame, std::vector<std::size_t>& pixels) {
+    for (const std::uint32_t id : frame.pointId)
+      if (id != Frame::kNoPoint)
+        ++pixels[static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin())];
+  };
+  count(frame_, shown);
+  count(expected_, wanted);
+  for (std::size_t item = 0; item < ends.size(); ++item) EXPECT_GE(shown[item], wanted[item] / 8) << "node " << item;
+  EXPECT_GT(covered(frame_), covered(expected_) / 4);
+  const DrawStats more = progressive_->draw(all, view, {}, frame_);
+  EXPECT_EQ(more.bytesUploaded, 0u) << "and then it rests";
+  EXPECT_EQ(progressive_->progress().ghostPieces, 0u);
+}
+
+/// Places far apart, three of them in view at a time.
+TEST_F(Progressive, MakesRoomForWhatComesIntoViewAndKeepsWhatJustLeftIt) {
+  STRATA_CREATE({50'000, 20'000, 100'000});
+  std::vector<std::shared_ptr<const NodeData>> nodes;
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (int place = 0; place < 12; ++place) {
+    std::vector<glm::dvec3> points(20'000);
+    for (glm::dvec3& p : points) p = kUtm + glm::dvec3(unit(random), unit(random), unit(random));
+    nodes.push_back(test::makeNode(NodeKey{}.child(place % 8), points, 0.001));
+  }
+  const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 200, 150, 1.0);
+  const auto uploadedAt = [&](int place) {
+    const RenderList list = test::makeList({nodes.begin() + place, nodes.begin() + place + 3});
+    std::uint64_t bytes = 0;
+    for (DrawStats stats;;) {
+      stats = progressive_->draw(list, view, {}, frame_);
+      EXPECT_LE(stats.bytesUploaded, 20'000u * 16);
+      bytes += stats.bytesUploaded;
+      if (isFinished(stats)) break;
+    }
+    expectPlainPicture(list, view);
+    return bytes / 16;
+  };
+  EXPECT_EQ(uploadedAt(0), 60'000u);
+  for (int place = 1; place <= 9; ++place) EXPECT_EQ(uploadedAt(place), 20'000u) << "the one that came into view";
+  EXPECT_LE(uploadedAt(8), 5'000u) << "left the view last; a quarter of what is shown is kept";
+  EXPECT_EQ(uploadedAt(0), 60'000u) << "left it long ago";
+}
+
+TEST_F(Progressive, OfASmallViewIsFinishedSoonInALargePool) {
+  STRATA_CREATE({20'000, 1'000'000, 2'000'000});
+  const RenderList list = test::makeTown(kUtm, 200.0, 60'000, 18);
+  const View view = viewOfBox(test::boundsOf(list), kDirection, 300, 200, 1.0);
+  EXPECT_LE(converge(list, view), 7);
+  EXPECT_LE(progressive_->progress().turnPlaces, 125'000u) << "two of 32 parts of the pool";
+  expectPlainPicture(list, view);
+}
+
 TEST_F(Progressive, UploadsNoMoreThanItMayInAFrame) {
   STRATA_CREATE({20'000, 10'000, 200'000});
   const RenderList list = test::makeTown(kUtm, 200.0, 100'000, 9);

@@ -21,8 +21,9 @@ struct Model {
   std::vector<std::uint32_t> ownerOf;
   std::map<std::uint32_t, Held> held;
   std::uint64_t frame = 1;
+  std::uint32_t limit;
 
-  explicit Model(std::uint32_t size) : ownerOf(size, kNobody) {}
+  explicit Model(std::uint32_t size) : ownerOf(size, kNobody), limit(size) {}
 
   void beginFrame() {
     ++frame;
@@ -36,7 +37,7 @@ struct Model {
   }
   std::uint32_t firstFit(std::uint32_t size) const {
     std::uint32_t run = 0;
-    for (std::uint32_t i = 0; i < ownerOf.size(); ++i) {
+    for (std::uint32_t i = 0; i < limit; ++i) {
       run = ownerOf[i] == kNobody ? run + 1 : 0;
       if (run == size) return i + 1 - size;
     }
@@ -49,7 +50,7 @@ struct Model {
   std::uint32_t leastImportant() const {
     std::uint32_t found = kNobody;
     for (const auto& [owner, b] : held) {
-      if (b.shown == frame) continue;
+      if (b.shown == frame || b.first >= limit) continue;
       const auto rank = [](const Held& h) { return std::make_tuple(h.importance, h.shown, h.first); };
       if (found == kNobody || rank(b) < rank(held.at(found))) found = owner;
     }
@@ -58,9 +59,9 @@ struct Model {
   bool allocate(std::uint32_t size, std::uint32_t owner, std::vector<std::uint32_t>& freed) {
     std::uint32_t at = firstFit(size);
     if (at == kNobody) {
-      std::uint64_t room = static_cast<std::uint64_t>(std::count(ownerOf.begin(), ownerOf.end(), kNobody));
-      for (const auto& [o, b] : held) room += b.shown == frame ? 0 : b.size;
-      if (room < size) return false;
+      const auto open = [this](std::uint32_t o) { return o == kNobody || held.at(o).shown != frame; };
+      const auto room = std::count_if(ownerOf.begin(), ownerOf.begin() + limit, open);
+      if (static_cast<std::uint32_t>(room) < size) return false;
     }
     for (; at == kNobody; at = firstFit(size)) {
       const std::uint32_t victim = leastImportant();
@@ -114,6 +115,9 @@ TEST_P(PoolManagerRuns, DoesWhatTheModelDoesUnderRandomUse) {
       manager.shown(held.at(owner));
       model.shown(owner);
     }
+    model.limit = below(3) == 0 ? size / 2 + below(size) : size;
+    manager.setLimit(model.limit);
+    model.limit = std::min(model.limit, size);
     for (int step = 0; step < 12; ++step) {
       if (!held.empty() && below(4) == 0) {
         const auto victim = std::next(held.begin(), below(static_cast<std::uint32_t>(held.size())));
@@ -165,6 +169,22 @@ TEST(PoolManager, FreesWhatWasShownLeastAndNeverWhatIsShown) {
   EXPECT_TRUE(manager.allocate(60, 2, note));
   EXPECT_EQ(freed, std::vector<std::uint32_t>{1});
   EXPECT_FALSE(manager.allocate(1, 3, note));
+}
+
+TEST(PoolManager, LeavesAloneWhatLiesBeyondTheLimit) {
+  PoolManager manager(100);
+  const auto nothingFreed = [](std::uint32_t owner) { ADD_FAILURE() << owner << " was freed"; };
+  const auto low = *manager.allocate(40, 0, nothingFreed);
+  manager.allocate(40, 1, nothingFreed);
+  manager.beginFrame();
+  manager.shown(low);
+  manager.setLimit(50);
+  EXPECT_FALSE(manager.allocate(11, 2, nothingFreed)) << "10 of the places of block 1 are below the limit";
+  EXPECT_EQ(manager.freePoints(), 20u);
+  manager.setLimit(1000);
+  const auto high = manager.allocate(20, 3, nothingFreed);
+  ASSERT_TRUE(high);
+  EXPECT_EQ((*high)->first, 80u);
 }
 
 TEST(PoolManager, OfNothingGivesNothing) {

@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PoolTurnOf,
 
 /// Bands in equal shares; what a short one has too few places for is the others'.
 TEST(PoolTurn, GoesOnInAllBandsEvenly) {
-  PoolTurn turn(16 * 4096 - 3000);
+  PoolTurn turn(16 * 4096 - 3000, 16);
   for (const PoolTurn::Band& band : turn.bands()) turn.shown(band.first, 1);
   turn.restart();
   std::vector<std::uint32_t> places;
