@@ -1,14 +1,22 @@
 #include "viewer/film_taker.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
+#include "core/error.h"
 #include "viewer/drawing.h"
 
 namespace strata {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestWait{120'000};  // for one frame's full detail
+
+/// The ending says which container it is.
+std::string besideWhileUnfinished(const std::filesystem::path& file) {
+  return (file.parent_path() / (file.stem().string() + ".part" + file.extension().string())).string();
+}
 
 }  // namespace
 
@@ -18,12 +26,13 @@ FilmTaker::FilmTaker(FilmOrder order, Layers& layers, Rasterizer& rasterizer)
       frames_(order_.path.frames()),
       layers_(layers),
       rasterizer_(rasterizer),
-      video_(order_.file, order_.width, order_.height, order_.path.fps) {}
+      unfinished_(besideWhileUnfinished(order_.file)),
+      video_(unfinished_, order_.width, order_.height, order_.path.fps) {}
 
 FilmTaker::~FilmTaker() {
   if (finished_) return;
   video_.abandon();
-  std::remove(order_.file.c_str());
+  std::remove(unfinished_.c_str());
 }
 
 bool FilmTaker::goOn(std::chrono::milliseconds patience) {
@@ -45,6 +54,7 @@ bool FilmTaker::goOn(std::chrono::milliseconds patience) {
   video_.add(imageOf(frame_));
   if (++index_ < frames_) return false;
   video_.finish();
+  if (std::rename(unfinished_.c_str(), order_.file.c_str()) != 0) throw posixError(order_.file, "writing", errno);
   finished_ = true;
   return true;
 }

@@ -39,6 +39,7 @@ class FilmTaker {
   const int frames_;
   Layers& layers_;
   Rasterizer& rasterizer_;
+  const std::string unfinished_;  ///< file; a film of that name that is there already stays until this one is whole
   VideoWriter video_;
   Frame frame_;
   int index_ = 0;

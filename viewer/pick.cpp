@@ -30,10 +30,10 @@ std::vector<std::uint32_t> nodesOf(const Hierarchy& hierarchy, NodeKey key) {
 
 }  // namespace
 
-std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Frame& frame, const glm::dvec2& pixel, int reach) {
+std::optional<glm::ivec2> drawnPixelAt(const Frame& frame, const glm::dvec2& pixel, int reach) {
   const int column = static_cast<int>(std::floor(pixel.x));
   const int row = static_cast<int>(std::floor(pixel.y));
-  std::uint32_t id = Frame::kNoPoint;
+  std::optional<glm::ivec2> best;
   int bestDistance = reach * reach + 1;
   float bestDepth = std::numeric_limits<float>::infinity();
   for (int y = std::max(0, row - reach); y <= std::min(frame.height - 1, row + reach); ++y)
@@ -45,9 +45,16 @@ std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Frame& fram
       if (distance > bestDistance || (distance == bestDistance && frame.depth[at] >= bestDepth)) continue;
       bestDistance = distance;
       bestDepth = frame.depth[at];
-      id = frame.pointId[at];
+      best = {x, y};
     }
-  if (id == Frame::kNoPoint) return std::nullopt;
+  return best;
+}
+
+std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Frame& frame, const glm::dvec2& pixel, int reach) {
+  const auto at = drawnPixelAt(frame, pixel, reach);
+  if (!at) return std::nullopt;
+  std::uint32_t id = frame.pointId[static_cast<std::size_t>(at->y) * static_cast<std::size_t>(frame.width) +
+                                   static_cast<std::size_t>(at->x)];
   for (std::size_t i = 0; i < list.items.size(); ++i) {
     if (id < list.items[i].pointCount) return DrawnPoint{i, id};
     id -= list.items[i].pointCount;

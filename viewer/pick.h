@@ -18,9 +18,12 @@ struct DrawnPoint {
   std::uint32_t point = 0;  ///< in the node's level order
 };
 
-/// The point that a click at `pixel` means: the one drawn there, else the nearest drawn one within `reach` pixels (the
-/// nearer to the eye of two as near to the pixel). Taken from the visibility buffer, so never one that is hidden.
-/// `frame` must have been drawn from `list`.
+/// The pixel that a click at `pixel` means: that one where a point is drawn there, else the nearest with one within
+/// `reach` pixels (the one nearer to the eye of two as near to the pixel).
+std::optional<glm::ivec2> drawnPixelAt(const Frame& frame, const glm::dvec2& pixel, int reach);
+
+/// The point that is seen there, taken from the visibility buffer, so never one that is hidden. `frame` must have been
+/// drawn from `list`.
 std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Frame& frame, const glm::dvec2& pixel, int reach);
 
 /// A point as its source has it.

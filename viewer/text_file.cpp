@@ -24,7 +24,12 @@ std::string readText(const std::string& path) {
 }
 
 void writeText(const std::string& path, std::string_view text) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  const bool device = fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
+  const fs::path target = device ? fs::path(path) : fs::weakly_canonical(path, ignored);
+  const std::string next = device ? path : target.string() + ".part";
+  const int file = ::open(next.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (file < 0) throw posixError(path, "opening for writing", errno);
   int failure = 0;
   while (!text.empty() && failure == 0) {
@@ -33,9 +38,9 @@ void writeText(const std::string& path, std::string_view text) {
     if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
   }
   if (::close(file) != 0 && failure == 0) failure = errno;
+  if (failure == 0 && !device && ::rename(next.c_str(), target.c_str()) != 0) failure = errno;
   if (failure == 0) return;
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) ::unlink(path.c_str());
+  if (!device) ::unlink(next.c_str());
   throw posixError(path, "writing", failure);
 }
 

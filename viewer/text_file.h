@@ -6,7 +6,7 @@ namespace strata {
 
 /// The whole of a small text file. Throws Error when it cannot be read.
 std::string readText(const std::string& path);
-/// Replaces the file; what a failed write leaves is removed. Throws Error when it cannot be written whole
+/// Replaces the file, whole or not at all: one that was there stays until then. Throws Error when it cannot be written
 /// (`report.json: writing: No space left on device`).
 void writeText(const std::string& path, std::string_view text);
 /// Makes the folder and the ones above it. Throws Error when that fails.

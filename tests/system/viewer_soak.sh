@@ -1,17 +1,21 @@
 #!/usr/bin/env bash
 # strata-view moved about at random by mouse and keys, inside an X server, while its memory is watched. Fails when the
 # memory of the last quarter of the time is more than a few per cent above that of the quarter after warming up.
-# usage: xvfb-run -a -s "-screen 0 1024x768x24" viewer_soak.sh STRATA_VIEW STORE FOLDER [MINUTES]; leaves FOLDER/soak.csv
+# usage: xvfb-run -a -s "-screen 0 1024x768x24 -noreset" viewer_soak.sh STRATA_VIEW STORE FOLDER [MINUTES]; leaves FOLDER/soak.csv
 set -euo pipefail
-# shellcheck source=viewer_hands.sh
-. "$(dirname "$0")/viewer_hands.sh"
-view=$1 store=$2 folder=$3 minutes=${4:-30}
+view=$(realpath "$1") store=$(realpath "$2") folder=$3 minutes=${4:-30}
 most_growth=5  # per cent; twice that in a run of less than ten minutes, which is still warming up
 if [ "$minutes" -lt 10 ]; then most_growth=10; fi
 cd "$folder"
 RANDOM=1
 
-start_viewer "$view" "$store" --backend cpu --size 800x600 --cache 32M
+program=$(type -P xdotool)
+xdotool() { timeout 10 "$program" "$@" || true; }
+"$view" "$store" --backend cpu --size 800x600 --cache 32M &
+viewer=$!
+trap 'kill $viewer 2>/dev/null || true' EXIT
+window=$(timeout 120 "$program" search --sync --onlyvisible --name Strata | head -n 1)
+xdotool windowfocus "$window"
 
 x() { echo $((350 + RANDOM % 100)); }  # between the panels
 y() { echo $((400 + RANDOM % 150)); }

@@ -16,9 +16,9 @@ TEST(ViewerSoak, MovedAboutAtRandomItHoldsItsMemory) {
   mustConvert({"synthetic:city?points=3000000&seed=1"}, store);
   const char* minutes = std::getenv("STRATA_SOAK_MINUTES");
   const Finished soak = runProgram(
-      "/usr/bin/xvfb-run", {"-a", "-s", "-screen 0 1024x768x24", STRATA_SOURCE_DIR "/tests/system/viewer_soak.sh",
-                            programPath("strata-view").string(), store.string(), (folder / "").string(),
-                            minutes != nullptr ? minutes : "1"});
+      "/usr/bin/xvfb-run", {"-a", "-s", "-screen 0 1024x768x24 -noreset",
+                            STRATA_SOURCE_DIR "/tests/system/viewer_soak.sh", programPath("strata-view").string(),
+                            store.string(), (folder / "").string(), minutes != nullptr ? minutes : "1"});
   EXPECT_EQ(soak.exitCode, 0) << soak.out << soak.err;
   std::printf("%s", soak.out.c_str());
 }

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <map>
 
 #include "core/image.h"
-#include "tests/support/programs.h"
+#include "tests/support/viewer_hand.h"
 #include "viewer/camera_control.h"
 #include "viewer/project.h"
 
@@ -37,7 +37,7 @@ class ViewerTools : public testing::Test {
   static fs::path store() { return file("city.strata"); }
 
   static Finished inX(std::vector<std::string> command) {
-    command.insert(command.begin(), {"-a", "-s", "-screen 0 1024x768x24"});
+    command.insert(command.begin(), {"-a", "-s", "-screen 0 1024x768x24 -noreset"});
     return runProgram(kXvfbRun, command);
   }
   /// The picture with the panels, as strata-view draws it of a store or a project.
@@ -54,13 +54,15 @@ class ViewerTools : public testing::Test {
     EXPECT_EQ(finished.exitCode, 0) << finished.err;
     return finished.exitCode == 0 ? readPng(file(name).string()) : Image{};
   }
-  /// A session of these steps; the projects it saved lie in the folder.
-  static void handsOn(const std::string& argument, const std::string& saved, const std::string& steps) {
-    std::ofstream(file("steps.txt")) << steps;
-    const Finished session =
-        inX({STRATA_SOURCE_DIR "/tests/system/viewer_steps.sh", programPath("strata-view").string(), file(".").string(),
-             file("steps.txt").string(), saved, argument, "--backend", "cpu", "--size", "1000x700"});
-    ASSERT_EQ(session.exitCode, 0) << session.err;
+  /// A session in the folder.
+  static ViewerHand handOn(const std::string& argument) {
+    return {file("."), {argument, "--backend", "cpu", "--size", "1000x700"}};
+  }
+  /// What Control + S saves now, as project(`name`).
+  static void save(ViewerHand& hand, const std::string& saved, const std::string& name) {
+    hand.save(saved);
+    if (saved != name + ".project.json")
+      fs::copy_file(file(saved), file(name + ".project.json"), fs::copy_options::overwrite_existing);
   }
   static Project project(const std::string& name) {
     const std::string path = file(name + ".project.json").string();
@@ -85,19 +87,27 @@ class ViewerTools : public testing::Test {
 TempFolder* ViewerTools::folder_ = nullptr;
 
 TEST_F(ViewerTools, AClipBoxIsMadeByAKeyDraggedByItsHandleKeptAndCutsThePicture) {
-  if (!fs::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
-  handsOn(store().string(), "city.project.json", "save plain\nkey b\nsave boxed\n");
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  {
+    ViewerHand hand = handOn(store().string());
+    save(hand, "city.project.json", "plain");
+    hand.key("b");
+    save(hand, "city.project.json", "boxed");
+    EXPECT_EQ(hand.quit(), 0) << hand.said();
+  }
   EXPECT_TRUE(project("plain").clipBoxes.empty());
   const Project boxed = project("boxed");
   ASSERT_EQ(boxed.clipBoxes.size(), 1u);
 
   const glm::dvec2 handle = pixelOf(boxed.view, handlePlace(boxed.clipBoxes[0].box, ClipHandle::top));
   ASSERT_TRUE(handle.x > kLeft && handle.x < kRight && handle.y > kUpper && handle.y < kLower);
-  const auto at = [](const glm::dvec2& p) {
-    return std::to_string(std::lround(p.x)) + " " + std::to_string(std::lround(p.y));
-  };
-  handsOn(file("boxed.project.json").string(), "boxed.project.json",
-          "drag " + at(handle) + " " + at(handle - glm::dvec2(0.0, 60.0)) + "\nsave dragged\n");
+  {
+    ViewerHand hand = handOn(file("boxed.project.json").string());
+    const auto x = static_cast<int>(std::lround(handle.x)), y = static_cast<int>(std::lround(handle.y));
+    hand.drag(x, y, x, y - 60);
+    save(hand, "boxed.project.json", "dragged");
+    EXPECT_EQ(hand.quit(), 0) << hand.said();
+  }
   const Project dragged = project("dragged");
   ASSERT_EQ(dragged.clipBoxes.size(), 1u);
   const Box &before = boxed.clipBoxes[0].box, &after = dragged.clipBoxes[0].box;
@@ -113,31 +123,93 @@ TEST_F(ViewerTools, AClipBoxIsMadeByAKeyDraggedByItsHandleKeptAndCutsThePicture)
 }
 
 TEST_F(ViewerTools, AShortcutFliesNotThoughControlGoesUpBeforeItsLetter) {
-  if (!fs::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
-  handsOn(store().string(), "city.project.json", "save first\ndown ctrl\ndown s\nup ctrl\nup s\nsave again\n");
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  ViewerHand hand = handOn(store().string());
+  save(hand, "city.project.json", "first");
+  hand.keyDown("ctrl");
+  hand.keyDown("s");
+  hand.keyUp("ctrl");
+  hand.frames(3);
+  hand.keyUp("s");
+  save(hand, "city.project.json", "again");
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
   EXPECT_EQ(project("again").view.eye, project("first").view.eye);
 }
 
-TEST_F(ViewerTools, AClassThatIsHiddenInTheProjectIsNotDrawn) {
-  handsOn(store().string(), "city.project.json", "save classes\n");
-  const int whole = pointPixels(pictureOf({file("classes.project.json").string()}, "classes.png"));
-  Json json = Json::parse(readWhole(file("classes.project.json")));
-  EXPECT_TRUE(json["settings"]["hidden_classes"].empty());
-  for (int c = 0; c < 256; ++c) json["settings"]["hidden_classes"].push_back(c);
-  std::ofstream(file("none.project.json")) << json;
-  const int nothing = pointPixels(pictureOf({file("none.project.json").string()}, "none.png"));
+TEST_F(ViewerTools, AClassIsHiddenByItsCheckBoxAndStaysSoInTheProject) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  ViewerHand hand = handOn(store().string());
+  save(hand, "city.project.json", "classes");
+  EXPECT_TRUE(project("classes").draw.classes.all());
+  hand.clickItem("Classes");
+  hand.clickItem("class 2");
+  hand.until("hidden_classes", 1);
+  save(hand, "city.project.json", "no_ground");
+  hand.clickItem("only class 6");
+  hand.until("hidden_classes", 255);
+  save(hand, "city.project.json", "buildings");
+  hand.clickItem("class 6");
+  hand.until("hidden_classes", 256);
+  save(hand, "city.project.json", "nothing");
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
+
+  EXPECT_EQ(project("no_ground").draw.classes, std::bitset<256>().set().reset(2));
+  EXPECT_EQ(project("buildings").draw.classes, std::bitset<256>().set(6));
+  const auto drawn = [](const std::string& name) {
+    return pointPixels(pictureOf({file(name + ".project.json").string()}, name + ".png"));
+  };
+  const int whole = drawn("classes");
   EXPECT_GT(whole, 20'000);
-  EXPECT_LT(nothing, whole / 20);
+  EXPECT_LT(drawn("no_ground"), whole);
+  EXPECT_GT(drawn("buildings"), 1'000);
+  EXPECT_LT(drawn("nothing"), whole / 20);
 }
 
-TEST_F(ViewerTools, AProfileIsDrawnByTwoClicksAndKeptWithItsWidth) {
-  if (!fs::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
-  handsOn(store().string(), "city.project.json", "key x\nclick 420 330\nclick 560 330\nkey Return\nsave profile\n");
+TEST_F(ViewerTools, AProfileIsDrawnByTwoClicksShownInItsWindowAndKeptWithItsWidth) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  ViewerHand hand = handOn(store().string());
+  hand.key("x");
+  hand.click(420, 330);
+  hand.until("measuring", 1);
+  hand.click(560, 330);
+  hand.until("measuring", 2);
+  hand.key("Return");
+  hand.until("measured", 1);
+  // Its window opens by itself and shows the points that lie in the slab.
+  const Json place = hand.settled().at("items").at("profile");
+  if (fs::exists("/usr/bin/ffmpeg")) {
+    hand.photograph("profile.png");
+    const Image image = readPng(file("profile.png").string());
+    const auto x = place[0].get<int>(), y = place[1].get<int>();
+    std::map<std::uint32_t, int> colours;
+    for (int dy = -60; dy < 60; ++dy)
+      for (int dx = -150; dx < 150; ++dx)
+        ++colours[image.pixels[static_cast<std::size_t>((y + dy) * image.width + x + dx)]];
+    int ground = 0;  // the commonest colour is what lies behind the points
+    for (const auto& [colour, count] : colours) ground = std::max(ground, count);
+    EXPECT_LT(ground, 300 * 120 - 200);
+    EXPECT_GT(ground, 300 * 120 / 4);
+  }
+  save(hand, "city.project.json", "profile");
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
   const std::vector<Measurement> kept = project("profile").measurements;
   ASSERT_EQ(kept.size(), 1u);
   EXPECT_EQ(kept[0].kind, MeasureKind::profile);
   EXPECT_EQ(kept[0].points.size(), 2u);
   EXPECT_EQ(kept[0].width, profileWidth(kept[0].points));
+}
+
+TEST_F(ViewerTools, ClicksThatComeFasterThanTheFramesAllCount) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  ViewerHand hand = handOn(store().string());
+  hand.key("m");
+  hand.clicksAtOnce({{420, 330}, {560, 330}, {450, 400}, {540, 400}});
+  hand.until("measured", 2);
+  hand.key("Escape");
+  const Json before = hand.settled().at("eye");
+  hand.doubleClick(480, 350);
+  hand.until("the glide", [&](const Json& s) { return s.at("eye") != before && s.at("settled").get<bool>(); });
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
 }
 
 TEST_F(ViewerTools, OfADamagedStoreTheRestIsShownAndTheDamageIsSaid) {
@@ -160,13 +232,15 @@ TEST_F(ViewerTools, OfADamagedStoreTheRestIsShownAndTheDamageIsSaid) {
 }
 
 TEST_F(ViewerTools, AStoreThatIsLostStaysInTheProjectAndTheOthersAreShown) {
-  if (!fs::exists("/usr/bin/xdotool")) GTEST_SKIP() << "xdotool is not there";
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
   Project two;
   two.stores = {file("gone.strata").string(), store().string()};
   two.shown = {false, true};
   const std::string path = file("two.project.json").string();
   std::ofstream(path) << projectJson(path, two);
-  handsOn(path, "two.project.json", "key f\nsave again\n");
+  ViewerHand hand = handOn(path);
+  save(hand, "two.project.json", "again");
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
   const Project again = project("again");
   ASSERT_EQ(again.stores.size(), 2u);
   EXPECT_EQ(again.stores[0], two.stores[0]);

@@ -2,10 +2,12 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <vector>
@@ -33,6 +35,8 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  said_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
+  if (said_ >= 0) posix_spawn_file_actions_adddup2(&actions, said_, STDERR_FILENO);
   const int failure =
       ::posix_spawnp(&process_, "ffmpeg", &actions, nullptr, const_cast<char**>(arguments.data()), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -40,11 +44,15 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
   socket_ = ends[0];
   if (failure == 0) return;
   ::close(socket_);
+  if (said_ >= 0) ::close(said_);
   if (failure == ENOENT) throw Error(path_, "a video needs the program ffmpeg, which is not installed");
   throw posixError(path_, "starting ffmpeg", failure);
 }
 
-VideoWriter::~VideoWriter() { abandon(); }
+VideoWriter::~VideoWriter() {
+  abandon();
+  if (said_ >= 0) ::close(said_);
+}
 
 void VideoWriter::abandon() {
   if (socket_ >= 0) ::close(socket_);
@@ -75,6 +83,13 @@ void VideoWriter::finish() {
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail();
 }
 
-void VideoWriter::fail() { throw Error(path_, "ffmpeg could not write the video; its message stands above"); }
+void VideoWriter::fail() {
+  abandon();  // its last words are there then
+  char text[2000];
+  const ssize_t length = said_ >= 0 ? ::pread(said_, text, sizeof text, 0) : 0;
+  std::string why(text, static_cast<std::size_t>(std::max<ssize_t>(length, 0)));
+  why.erase(std::min(why.find('\n'), why.size()));
+  throw Error(path_, "ffmpeg could not write the video" + (why.empty() ? std::string() : ": " + why));
+}
 
 }  // namespace strata

@@ -25,6 +25,7 @@ class VideoWriter {
   [[noreturn]] void fail();
 
   const std::string path_;
+  int said_ = -1;  ///< memory file of what ffmpeg says on stderr
   int socket_ = -1;
   int process_ = -1;
 };

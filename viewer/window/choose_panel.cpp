@@ -7,6 +7,7 @@
 
 #include "render/colour_map.h"
 #include "viewer/class_census.h"
+#include "viewer/window/item_places.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {
@@ -99,6 +100,7 @@ bool drawClassSection(const std::bitset<256>& present, std::bitset<256>& shown) 
       shown[c] = on;
       changed = true;
     }
+    noteItem("class " + std::to_string(c));
     ImGui::SameLine();
     const std::uint32_t colour = classificationColour(static_cast<std::uint8_t>(c));
     ImGui::ColorButton("##colour", ImGui::ColorConvertU32ToFloat4(colour),
@@ -113,6 +115,7 @@ bool drawClassSection(const std::bitset<256>& present, std::bitset<256>& shown) 
       shown.set(c);
       changed = true;
     }
+    noteItem("only class " + std::to_string(c));
     ImGui::PopID();
   }
   return changed;

@@ -8,6 +8,7 @@
 
 #include "viewer/bench/html_text.h"
 #include "viewer/picture_taker.h"
+#include "viewer/window/item_places.h"
 
 namespace strata {
 namespace {
@@ -23,10 +24,18 @@ void inputText(const char* name, std::string& text) {
 }
 
 void inputSize(const char* name, int& width, int& height, int largest) {
-  int size[2] = {width, height};
-  if (!ImGui::InputInt2(name, size)) return;
-  width = std::clamp(size[0], 1, largest);
-  height = std::clamp(size[1], 1, largest);
+  const float each = 0.5f * (ImGui::CalcItemWidth() - ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::PushID(name);
+  ImGui::SetNextItemWidth(each);
+  if (ImGui::InputInt("##width", &width, 0)) width = std::clamp(width, 1, largest);
+  noteItem(std::string(name) + " width");
+  ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::SetNextItemWidth(each);
+  if (ImGui::InputInt("##height", &height, 0)) height = std::clamp(height, 1, largest);
+  noteItem(std::string(name) + " height");
+  ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+  ImGui::TextUnformatted(name);
+  ImGui::PopID();
 }
 
 void drawPictureSection(KeepState& state, const View& view, KeepRequest& request) {
@@ -112,6 +121,13 @@ void drawFilmSection(KeepState& state, KeepRequest& request) {
   if (ImGui::DragFloat("frames a second", &fps, 0.1f, 1.0f, 240.0f, "%.0f")) state.fps = static_cast<double>(fps);
   inputText("film", state.filmFile);
   request.takeFilm = ImGui::Button("make the film");
+  noteItem("make the film");
+}
+
+bool drawFilmHeader() {
+  const bool open = ImGui::CollapsingHeader("Film of the path");
+  noteItem("Film of the path");
+  return open;
 }
 
 }  // namespace
@@ -126,7 +142,7 @@ KeepRequest drawKeepPanel(KeepState& state, const View& view) {
     ImGui::PushItemWidth(0.6f * kWidth * ImGui::GetFontSize());
     if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) drawPictureSection(state, view, request);
     if (ImGui::CollapsingHeader("Camera path", ImGuiTreeNodeFlags_DefaultOpen)) drawPathSection(state, view, request);
-    if (!state.path.keys().empty() && ImGui::CollapsingHeader("Film of the path")) drawFilmSection(state, request);
+    if (!state.path.keys().empty() && drawFilmHeader()) drawFilmSection(state, request);
     ImGui::PopItemWidth();
   }
   ImGui::End();

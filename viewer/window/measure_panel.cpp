@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "viewer/window/choose_panel.h"
+#include "viewer/window/item_places.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {
@@ -145,6 +146,13 @@ void drawOne(const Measurement& m, const View& view, std::uint32_t colour) {
   for (const glm::dvec3& p : m.points) overlayDot(view, p, colour, 3.5f);
 }
 
+/// True where the section is open.
+bool drawHeader(const char* name, bool openAtFirst) {
+  const bool open = ImGui::CollapsingHeader(name, openAtFirst ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  noteItem(name);
+  return open;
+}
+
 }  // namespace
 
 ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& bounds) {
@@ -157,7 +165,7 @@ ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& boun
                                       ImVec2(outer, ImGui::GetIO().DisplaySize.y - 2.0f * kMargin));
   ImGui::SetNextWindowBgAlpha(0.82f);
   if (ImGui::Begin("Tools", nullptr, ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize)) {
-    if (state.layers.size() > 1 && ImGui::CollapsingHeader("Layers", ImGuiTreeNodeFlags_DefaultOpen))
+    if (state.layers.size() > 1 && drawHeader("Layers", true))
       for (std::size_t i = 0; i < state.layers.size(); ++i) {
         bool shown = state.shown[i];
         if (ImGui::Checkbox(state.layers[i].c_str(), &shown)) {
@@ -165,13 +173,13 @@ ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& boun
           request.layersChanged = true;
         }
       }
-    if (ImGui::CollapsingHeader("Point", ImGuiTreeNodeFlags_DefaultOpen)) drawPicked(state);
-    if (ImGui::CollapsingHeader("Measure", ImGuiTreeNodeFlags_DefaultOpen)) drawMeasure(state, request);
-    if (ImGui::CollapsingHeader("Clip"))
+    if (drawHeader("Point", true)) drawPicked(state);
+    if (drawHeader("Measure", true)) drawMeasure(state, request);
+    if (drawHeader("Clip", false))
       request.pictureChanged = drawClipSection(state.clip, view, bounds) || request.pictureChanged;
-    if (ImGui::CollapsingHeader("Classes"))
+    if (drawHeader("Classes", false))
       request.pictureChanged = drawClassSection(state.census.present(), state.classes) || request.pictureChanged;
-    if (ImGui::CollapsingHeader("Keep", ImGuiTreeNodeFlags_DefaultOpen)) drawBookmarks(state, request);
+    if (drawHeader("Keep", true)) drawBookmarks(state, request);
   }
   ImGui::End();
   return request;

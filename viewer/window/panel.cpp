@@ -12,6 +12,7 @@
 
 #include "viewer/bench/html_text.h"
 #include "viewer/legend.h"
+#include "viewer/window/item_places.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {
@@ -251,6 +252,7 @@ void drawError(std::string& text) {
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     if (ImGui::SmallButton("close")) text.clear();
+    noteItem("close the message");
   }
   ImGui::End();
 }

@@ -6,24 +6,31 @@
 
 namespace strata {
 
-bool PointLookup::ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point,
+void PointLookup::ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point,
                       const glm::dvec3& drawnAt) {
-  if (pending()) return false;
-  answer_ = std::async(std::launch::async, [store = std::move(store), node, point, drawnAt] {
+  waiting_.push_back({std::move(store), node, point, drawnAt});
+  if (!pending()) askNext();
+}
+
+void PointLookup::askNext() {
+  if (waiting_.empty()) return;
+  answer_ = std::async(std::launch::async, [question = std::move(waiting_.front())] {
     Answer answer;
     try {
-      answer.point = lookUpPoint(*store, node, point, drawnAt);
+      answer.point = lookUpPoint(*question.store, question.node, question.point, question.drawnAt);
     } catch (const std::exception& error) {
       answer.error = error.what();
     }
     return answer;
   });
-  return true;
+  waiting_.pop_front();
 }
 
 std::optional<PointLookup::Answer> PointLookup::take() {
   if (!pending() || answer_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
-  return answer_.get();
+  Answer answer = answer_.get();
+  askNext();
+  return answer;
 }
 
 }  // namespace strata

@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <future>
 #include <memory>
 #include <optional>
@@ -16,13 +17,22 @@ class PointLookup {
     std::string error;  ///< empty when all went well
   };
 
-  /// Render thread. A question that is still open is answered first; the new one is dropped then (false).
-  bool ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point, const glm::dvec3& drawnAt);
+  /// Render thread. Questions are answered one after the other.
+  void ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point, const glm::dvec3& drawnAt);
   bool pending() const { return answer_.valid(); }
   /// Render thread, once a frame: the answer, when it has come.
   std::optional<Answer> take();
 
  private:
+  struct Question {
+    std::shared_ptr<const Store> store;
+    NodeKey node;
+    std::uint32_t point;
+    glm::dvec3 drawnAt;
+  };
+  void askNext();
+
+  std::deque<Question> waiting_;
   std::future<Answer> answer_;  ///< its destructor waits for the one read that may be on its way
 };
 

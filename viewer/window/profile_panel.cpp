@@ -9,6 +9,7 @@
 #include "viewer/bench/html_text.h"
 #include "viewer/class_census.h"
 #include "viewer/pick.h"
+#include "viewer/window/item_places.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {
@@ -130,6 +131,7 @@ void ProfilePanel::drawPicture(const DrawOptions& options, Outcome& outcome) {
   ProfileWindow window =
       window_ ? resizedProfile(*window_, width, height) : fitProfile(profile_, width, height, stretch_);
   ImGui::InvisibleButton("picture", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+  noteItem("profile");
   const glm::dvec2 cursor(static_cast<double>(io.MousePos.x - corner.x), static_cast<double>(io.MousePos.y - corner.y));
   if (ImGui::IsItemActive() && (io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f))
     window_ = window = pannedProfile(window, {io.MouseDelta.x, io.MouseDelta.y});

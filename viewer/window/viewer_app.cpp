@@ -26,6 +26,7 @@
 #include "viewer/window/progressive_panel.h"
 #include "viewer/window/scan_conversion.h"
 #include "viewer/window/screen.h"
+#include "viewer/window/state_file.h"
 #include "viewer/window/window.h"
 
 namespace strata {
@@ -65,6 +66,7 @@ class ViewerApp {
         screen_(Window::getProc()),
         profile_(Window::getProc()),
         inside_(Window::getProc()),
+        stateFile_(options.state),
         rasterizer_(createAnyRasterizer(options, layers_)),
         progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
@@ -127,11 +129,13 @@ class ViewerApp {
       if (keeper_.working()) {
         work(input);
         idle = input.hidden;
+        sayState(input, false);
         continue;
       }
       if (input.hidden) {
         window_.finishFrame();
         idle = true;
+        sayState(input, true);
         continue;
       }
       steer(input);
@@ -143,6 +147,7 @@ class ViewerApp {
       window_.present();
       idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
              !lookup_.pending() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
+      sayState(input, idle);
     }
   }
 
@@ -177,6 +182,28 @@ class ViewerApp {
   }
 
  private:
+  void sayState(const WindowInput& input, bool settled) {
+    if (options_.state.empty()) return;
+    const std::optional<Measurement>& current = tools_.measure.current();
+    stateFile_.write(window_, {.settled = settled,
+                               .hidden = input.hidden,
+                               .size = {input.width, input.height},
+                               .eye = control_.view().eye,
+                               .moving = modeName(control_.mode()),
+                               .measuring = current ? static_cast<int>(current->points.size()) : -1,
+                               .measured = tools_.measure.kept().size(),
+                               .clipBoxes = tools_.clip.boxes().size(),
+                               .hiddenClasses = tools_.classes.size() - tools_.classes.count(),
+                               .pathKeys = keeper_.state().path.keys().size(),
+                               .recording = keeper_.state().path.recording(),
+                               .playing = keeper_.state().playing,
+                               .working = keeper_.working(),
+                               .drawn = framesDrawn_,
+                               .picked = tools_.picked ? tools_.picked->coordinates : std::string(),
+                               .notice = stats_.notice,
+                               .error = stats_.error});
+  }
+
   Keeper::Scene keeperScene() {
     return {layers_, *rasterizer_, settings_.draw, settings_.selection, options_.stores.front()};
   }
@@ -213,16 +240,14 @@ class ViewerApp {
     keeper_.record(control_.view(), input.seconds);
   }
 
-  /// The world point below the cursor in the newest picture, where there is one.
+  /// The world point below the cursor in the newest picture, or within a click's reach of it.
   std::optional<glm::dvec3> pointUnder(const glm::dvec2& cursor) const {
-    const int x = static_cast<int>(std::floor(cursor.x));
-    const int y = static_cast<int>(std::floor(cursor.y));
-    if (x < 0 || y < 0 || x >= frame_.width || y >= frame_.height) return std::nullopt;
-    const float depth =
-        frame_
-            .depth[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(x)];
-    if (!std::isfinite(depth)) return std::nullopt;
-    return worldPoint(control_.view(), cursor, static_cast<double>(depth));
+    const auto pixel = drawnPixelAt(frame_, cursor, kClickReach);
+    if (!pixel) return std::nullopt;
+    const glm::dvec2 seen = glm::ivec2(glm::floor(cursor)) == *pixel ? cursor : glm::dvec2(*pixel) + 0.5;
+    const float depth = frame_.depth[static_cast<std::size_t>(pixel->y) * static_cast<std::size_t>(frame_.width) +
+                                     static_cast<std::size_t>(pixel->x)];
+    return worldPoint(control_.view(), seen, static_cast<double>(depth));
   }
 
   void steer(const WindowInput& input) {
@@ -301,6 +326,7 @@ class ViewerApp {
     settings_.draw.clip = clipOf(tools_.clip.boxes(), planes_);
     settings_.draw.classes = tools_.classes;
     stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
+    ++framesDrawn_;
     screen_.upload(frame_);
     window_.drawPicture(screen_.texture());
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -430,6 +456,7 @@ class ViewerApp {
   Screen screen_;
   ProfilePanel profile_;
   InsidePanel inside_;
+  StateFile stateFile_;
   std::unique_ptr<Rasterizer> rasterizer_;
   ProgressiveRasterizer* progressive_;  ///< rasterizer_, or null where that draws everything in each frame
   CameraControl control_;
@@ -447,6 +474,7 @@ class ViewerApp {
   std::size_t keptBefore_ = 0;      ///< measurements in the last frame
   bool endMeasuring_ = false;       ///< as soon as the point asked for is there
   bool helpOpen_ = false;
+  std::uint64_t framesDrawn_ = 0;
   const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
   Frame frame_;
 };

@@ -28,6 +28,7 @@ struct ViewerOptions {
   bool convert = false;  ///< scans are converted without asking
   std::string picture;   ///< file; draws the scene alone in full detail and ends
   PictureSize pictureSize{4096, 2560};
+  std::string state;       ///< file that says after every frame what the window shows, for scripts; empty = none
   std::string screenshot;  ///< file; draws one frame in full detail, window and all, and ends
 };
 

@@ -32,6 +32,8 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   app.add_option("--picture", options.picture, "write the scene without panels in full detail to this PNG and end");
   app.add_option("--picture-size", pictureSize, "of that picture, up to 16384x16384 pixels")->capture_default_str();
   app.add_option("--screenshot", options.screenshot, "write one complete frame to this PNG and end");
+  app.add_option("--state", options.state,
+                 "say in this file after every frame what the window shows, as JSON, for scripts");
   if (!parseCommandLine(app, argc, argv)) return std::nullopt;
   options.backend = parseBackend(backend);
   checkProgressive(options.progressive, backend, options.draw);

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "core/error.h"
+#include "viewer/input_queue.h"
 
 namespace strata {
 namespace {
@@ -52,47 +52,104 @@ float contentScale(GLFWwindow* window) {
   return std::clamp(std::max(x, y) / std::max(own, 0.1f), 1.0f, 4.0f);
 }
 
-/// What went down since the last frame, however briefly, and where: Dear ImGui before 1.87 only knows what is down at a
-/// frame and where the cursor is then. And which keys are down that went down without Control: those of a shortcut are
-/// none that fly, not even while their letter outlasts Control.
-struct Presses {
+/// The keys of one frame: those that go down in it, and those that are down and went down without Control: the keys of
+/// a shortcut are none that fly, not even while the letter outlasts Control.
+struct Keys {
   struct Press {
     int key = 0;
     bool control = false;
   };
-  std::vector<Press> keys;
+  std::vector<Press> pressed;
   std::bitset<GLFW_KEY_LAST + 1> held;
-  glm::dvec2 cursor{0.0};              ///< when the last event came, window units
-  std::optional<glm::dvec2> buttonAt;  ///< where a mouse button went down
 
+  void take(const InputEvent& event) {
+    const bool control = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+    if (event.down && !event.repeated) pressed.push_back({event.code, control});
+    if (event.code >= 0 && !event.repeated) held.set(static_cast<std::size_t>(event.code), event.down && !control);
+  }
   bool plain(int key) const { return has({key, false}); }
   bool withControl(int key) const { return has({key, true}); }
 
  private:
   bool has(const Press& wanted) const {
-    return std::any_of(keys.begin(), keys.end(),
+    return std::any_of(pressed.begin(), pressed.end(),
                        [&](const Press& p) { return p.key == wanted.key && p.control == wanted.control; });
   }
 };
 
-void takeKey(GLFWwindow* window, int key, int, int action, int modifiers) {
-  auto* presses = static_cast<Presses*>(glfwGetWindowUserPointer(window));
-  const bool control = (modifiers & GLFW_MOD_CONTROL) != 0;
-  if (action == GLFW_PRESS) presses->keys.push_back({key, control});
-  if (key >= 0 && action != GLFW_REPEAT)
-    presses->held.set(static_cast<std::size_t>(key), action == GLFW_PRESS && !control);
+/// What the window system tells, frame by frame.
+struct Hand {
+  InputQueue queue;
+  double askedAt = 0.0;  ///< seconds: when the window system was asked last
+  // As of the present frame.
+  Keys keys;
+  glm::dvec2 cursor{0.0};
+  std::bitset<3> down;
+  bool leftDoubleClicked = false;
+  InputCounts counts;
+
+  void add(InputEvent event) {
+    event.after = askedAt;
+    event.before = glfwGetTime();
+    queue.add(event);
+  }
+};
+
+Hand& handOf(GLFWwindow* window) { return *static_cast<Hand*>(glfwGetWindowUserPointer(window)); }
+
+void takeKey(GLFWwindow* window, int key, int scancode, int action, int modifiers) {
+  handOf(window).add({.kind = InputEvent::Kind::key,
+                      .code = key,
+                      .scancode = scancode,
+                      .down = action != GLFW_RELEASE,
+                      .repeated = action == GLFW_REPEAT,
+                      .modifiers = modifiers});
 }
 
-void takeCursor(GLFWwindow* window, double x, double y) {
-  static_cast<Presses*>(glfwGetWindowUserPointer(window))->cursor = {x, y};
+void takeLetter(GLFWwindow* window, unsigned letter) {
+  handOf(window).add({.kind = InputEvent::Kind::letter, .code = static_cast<int>(letter)});
 }
 
-void takeButton(GLFWwindow* window, int, int action, int) {
-  auto* presses = static_cast<Presses*>(glfwGetWindowUserPointer(window));
-  if (action == GLFW_PRESS) presses->buttonAt = presses->cursor;
+void takeCursor(GLFWwindow* window, double x, double y) { handOf(window).add({.place = {x, y}}); }
+
+void takeButton(GLFWwindow* window, int button, int action, int) {
+  if (button < 3) handOf(window).add({.kind = InputEvent::Kind::button, .code = button, .down = action == GLFW_PRESS});
 }
 
-void readKeys(const Presses& keys, WindowInput& input) {
+void takeWheel(GLFWwindow* window, double x, double y) {
+  handOf(window).add({.kind = InputEvent::Kind::wheel, .place = {x, y}});
+}
+
+/// The events of this frame, for us and for Dear ImGui.
+void takeFrame(GLFWwindow* window, Hand& hand) {
+  hand.keys.pressed.clear();
+  hand.leftDoubleClicked = false;
+  for (const InputEvent& event : hand.queue.takeFrame()) switch (event.kind) {
+      case InputEvent::Kind::cursor:
+        hand.cursor = event.place;
+        break;
+      case InputEvent::Kind::button:
+        hand.down.set(static_cast<std::size_t>(event.code), event.down);
+        hand.leftDoubleClicked = event.doubleClick && event.code == GLFW_MOUSE_BUTTON_LEFT;
+        ++hand.counts.buttons;
+        break;
+      case InputEvent::Kind::wheel:
+        ImGui_ImplGlfw_ScrollCallback(window, event.place.x, event.place.y);
+        ++hand.counts.wheel;
+        break;
+      case InputEvent::Kind::key:
+        hand.keys.take(event);
+        ImGui_ImplGlfw_KeyCallback(window, event.code, event.scancode, event.down ? GLFW_PRESS : GLFW_RELEASE,
+                                   event.modifiers);
+        if (!event.repeated) ++hand.counts.keys;
+        break;
+      case InputEvent::Kind::letter:
+        ImGui_ImplGlfw_CharCallback(window, static_cast<unsigned>(event.code));
+        break;
+    }
+}
+
+void readKeys(const Keys& keys, WindowInput& input) {
   input.frameAll = keys.plain(GLFW_KEY_F);
   input.front = keys.plain(GLFW_KEY_1) || keys.plain(GLFW_KEY_KP_1);
   input.side = keys.plain(GLFW_KEY_3) || keys.plain(GLFW_KEY_KP_3);
@@ -124,7 +181,8 @@ void readKeys(const Presses& keys, WindowInput& input) {
 
 struct Window::Parts {
   GLFWwindow* window = nullptr;
-  Presses presses;
+  Hand hand;
+  ItemPlaces places;
 
   Parts(const std::string& title, int width, int height, bool visible) {
     if (glfwInit() != GLFW_TRUE) throw windowError();
@@ -138,6 +196,7 @@ struct Window::Parts {
     glfwSwapInterval(visible ? 1 : 0);
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
+    ImGui::GetIO().UserData = &places;
     ImGui::StyleColorsDark();
     ImGui::GetStyle().WindowRounding = 6.0f;
     const float scale = contentScale(window);
@@ -145,12 +204,16 @@ struct Window::Parts {
     ImFontConfig font;
     font.SizePixels = std::round(kTextHeight * scale);
     ImGui::GetIO().Fonts->AddFontDefault(&font);
-    glfwSetWindowUserPointer(window, &presses);
-    glfwGetCursorPos(window, &presses.cursor.x, &presses.cursor.y);
-    glfwSetKeyCallback(window, takeKey);  // before Dear ImGui's, which call these
+    glfwSetWindowUserPointer(window, &hand);
+    glfwGetCursorPos(window, &hand.cursor.x, &hand.cursor.y);
+    glfwSetKeyCallback(window, takeKey);
+    glfwSetCharCallback(window, takeLetter);
     glfwSetMouseButtonCallback(window, takeButton);
     glfwSetCursorPosCallback(window, takeCursor);
-    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    glfwSetScrollCallback(window, takeWheel);
+    ImGui_ImplGlfw_InitForOpenGL(window, false);
+    glfwSetCursorEnterCallback(window, ImGui_ImplGlfw_CursorEnterCallback);
+    glfwSetWindowFocusCallback(window, ImGui_ImplGlfw_WindowFocusCallback);
     ImGui_ImplOpenGL3_Init("#version 330");
   }
   ~Parts() {
@@ -172,17 +235,23 @@ Window::~Window() = default;
 bool Window::closed() const { return glfwWindowShouldClose(parts_->window) == GLFW_TRUE; }
 
 WindowInput Window::beginFrame(double waitSeconds) {
-  parts_->presses.keys.clear();
-  parts_->presses.buttonAt.reset();
-  if (waitSeconds > 0.0)
+  Hand& hand = parts_->hand;
+  if (waitSeconds > 0.0 && hand.queue.empty())
     glfwWaitEventsTimeout(waitSeconds);
   else
     glfwPollEvents();
+  hand.askedAt = glfwGetTime();
+  takeFrame(parts_->window, hand);
+  parts_->places.clear();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();
+  // Dear ImGui's own hand knows only how things stand by now.
+  for (std::size_t i = 0; i < hand.down.size(); ++i) io.MouseDown[i] = hand.down[i];
+  if (ImGui::IsMousePosValid(&io.MousePos) || hand.down.any())
+    io.MousePos = {static_cast<float>(hand.cursor.x), static_cast<float>(hand.cursor.y)};
   ImGui::NewFrame();
 
-  const ImGuiIO& io = ImGui::GetIO();
   WindowInput input;
   glfwGetFramebufferSize(parts_->window, &input.width, &input.height);
   // X11 leaves a minimised window its size.
@@ -196,17 +265,23 @@ WindowInput Window::beginFrame(double waitSeconds) {
   if (!io.WantCaptureMouse) {
     input.leftPressed = io.MouseClicked[0];
     input.rightPressed = io.MouseClicked[1];
-    // A hand that moves on before a slow frame begins has still pressed where it pressed; the next frame moves.
-    if ((input.leftPressed || input.rightPressed) && parts_->presses.buttonAt)
-      input.cursor = pixels * *parts_->presses.buttonAt;
     input.wheel = static_cast<double>(io.MouseWheel);
-    input.doubleClicked = io.MouseDoubleClicked[0];
+    input.doubleClicked = hand.leftDoubleClicked;
     input.clicked = io.MouseReleased[0] && io.MouseDragMaxDistanceSqr[0] < kClickPx * kClickPx;
   }
-  if (!io.WantCaptureKeyboard) readKeys(parts_->presses, input);
-  if (parts_->presses.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
+  if (!io.WantCaptureKeyboard) readKeys(hand.keys, input);
+  if (hand.keys.withControl(GLFW_KEY_Q)) glfwSetWindowShouldClose(parts_->window, GLFW_TRUE);
+  input.moreWaits = !hand.queue.empty();
   return input;
 }
+
+const InputCounts& Window::inputCounts() const { return parts_->hand.counts; }
+
+glm::dvec2 Window::cursor() const { return parts_->hand.cursor; }
+
+const ItemPlaces& Window::itemPlaces() const { return parts_->places; }
+
+bool Window::focused() const { return glfwGetWindowAttrib(parts_->window, GLFW_FOCUSED) == GLFW_TRUE; }
 
 bool Window::panelInUse() const { return ImGui::IsAnyItemActive() || ImGui::GetIO().WantTextInput; }
 

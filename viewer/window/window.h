@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -6,6 +7,7 @@
 
 #include "render/gl_context.h"
 #include "viewer/camera_control.h"
+#include "viewer/window/item_places.h"
 
 namespace strata {
 
@@ -37,12 +39,20 @@ struct WindowInput {
   bool nextMode = false;                               ///< G: the next way of moving
   bool hidden = false;                                 ///< minimised, or not on the screen: nothing need be drawn
 
+  bool moreWaits = false;  ///< for the next frames: see InputQueue
+
   /// Nothing that changes the picture.
   bool idle() const {
     return !dragging && !leftPressed && !rightPressed && wheel == 0.0 && fly.still() && !frameAll && !front && !side &&
            !top && !orthographic && !clicked && !doubleClicked && !keep && !takeBack && !drop && !save && !measure &&
-           !profile && !clipBox && !help && !pictures && !takePicture && !pathKey && !record && !play && !nextMode;
+           !profile && !clipBox && !help && !pictures && !takePicture && !pathKey && !record && !play && !nextMode &&
+           !moreWaits;
   }
+};
+
+/// What the window has taken in since it was opened, as numbers of events: a key or a button goes down, or up.
+struct InputCounts {
+  std::uint64_t keys = 0, buttons = 0, wheel = 0;
 };
 
 /// A window with an OpenGL context, current in the thread that makes it, and Dear ImGui in it. There is one at a time.
@@ -59,6 +69,10 @@ class Window {
   WindowInput beginFrame(double waitSeconds);
   /// The mouse is over a panel or a text is typed: what is drawn may change with every event.
   bool panelInUse() const;
+  const InputCounts& inputCounts() const;
+  bool focused() const;
+  glm::dvec2 cursor() const;  ///< window units
+  const ItemPlaces& itemPlaces() const;
   /// Puts a texture behind everything.
   void drawPicture(unsigned texture);
   /// Draws the panel into the back buffer.
