@@ -54,7 +54,7 @@ void addDrawFlags(CLI::App& app, DrawFlags& flags) {
   app.add_option("--background", flags.background, "RRGGBB, or TOP,BELOW for a gradient");
   app.add_option("--fill", flags.fill,
                  "holes are filled out of a window of 3, 5 or 7 pixels, by depth, or by jump-flood, "
-                 "with splats as large as the points lie apart")
+                 "with splats as large as the points lie apart (default: 1; for stills in colour jump-flood)")
       ->check(CLI::IsMember({"1", "3", "5", "7", kJumpFlood}));
   addRepeated(app, "--clip-box", flags.clipBoxes, "X0 Y0 Z0 X1 Y1 Z1: draw only what is in one of these boxes");
   addRepeated(app, "--clip-plane", flags.clipPlanes, "A B C D: draw only where Ax + By + Cz + D >= 0");
@@ -85,7 +85,7 @@ glm::u8vec3 parseHexColour(const std::string& text) {
 void applyDrawFlags(const DrawFlags& flags, DrawOptions& draw) {
   draw.shading = flags.shading == "hq" ? Shading::highQuality : Shading::plain;
   draw.jumpFlood = flags.fill == kJumpFlood;
-  draw.fill = draw.jumpFlood ? 1 : std::stoi(flags.fill);
+  draw.fill = draw.jumpFlood || flags.fill.empty() ? 1 : std::stoi(flags.fill);
   if (flags.range.size() == 2) {
     draw.elevationRange = {flags.range[0], flags.range[1]};
     draw.intensityRange = glm::vec2(draw.elevationRange);

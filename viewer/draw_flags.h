@@ -14,7 +14,8 @@ namespace strata {
 
 /// The options of the command line that say how points are drawn; the same for strata-bench and strata-view.
 struct DrawFlags {
-  std::string colour = "auto", shading = "plain", classes, background, fill = "1";
+  std::string colour = "auto", shading = "plain", classes, background;
+  std::string fill;                              ///< empty: 1, of a still jump-flood
   std::vector<double> range;                     ///< two, or none
   std::vector<std::array<double, 6>> clipBoxes;  ///< x0 y0 z0 x1 y1 z1
   std::vector<std::array<double, 4>> clipPlanes;

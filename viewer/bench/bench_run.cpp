@@ -237,17 +237,19 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
 /// A still of full detail. Where the scan is too sparse for a place so near, the camera steps back, at most to
 /// `farthest` metres.
 Image takeStill(Still still, double farthest, DrawOptions draw, Streamer& streamer, Rasterizer& rasterizer) {
+  DrawOptions bare = draw;
+  bare.pointSize = 1;
+  bare.fill = 1;
+  bare.jumpFlood = bare.edl = false;
   FrontSpacing spacing;
   for (int step = 0; step < kStepsBack; ++step) {
-    draw.pointSize = 1;
-    draw.edl = false;
-    spacing = frontSpacing(drawComplete(still.view, draw, streamer, rasterizer), still.view);
+    spacing = frontSpacing(drawComplete(still.view, bare, streamer, rasterizer), still.view);
     const double factor = std::min(spacing.pixels / kWantedSpacingPx, farthest / still.subject);
     if (spacing.pixels <= kWidestSpacingPx || factor <= 1.05) break;
     still = fartherStill(still, factor);
   }
-  draw.pointSize = closedPointSize(spacing.pixels);
-  draw.pointMetres = closedPointMetres(spacing.metres);
+  draw.pointSize = draw.jumpFlood ? 1 : closedPointSize(spacing.pixels);
+  draw.pointMetres = draw.jumpFlood ? 0.0f : closedPointMetres(spacing.metres);
   draw.edl = true;
   return imageOf(drawComplete(still.view, draw, streamer, rasterizer));
 }
@@ -260,6 +262,8 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   rich.selection.pointsPerPixel = std::max(rich.selection.pointsPerPixel, kStillPointsPerPixel);
   DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
   applyDrawFlags(options.draw, draw);
+  // A map of heights is read by its relief, which splats smooth away.
+  if (options.draw.fill.empty()) draw.jumpFlood = draw.colour != ColourMode::elevation;
   rich.selection.shown = shownBy(draw);
   Streamer streamer(store, rich);
   std::vector<ReportPicture> pictures;
