@@ -5,10 +5,10 @@
 #   BUILD    folder with bin/ and tests/ (default: build/release)     FOLDER  scratch, what is in it is used again
 #            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
 #   -q       quick: everything a hundredth, only to see that it works
-#   SECTION  machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real largest
-#            larger targets; default: all but larger and largest
+#   SECTION  machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights
+#            real largest larger targets; default: all but larger and largest
 # Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M", CITY=50e6 and ROOM=20e6 (points of the stores that are flown through),
-# LARGEST=500e6, RASTER=10 (million points), SCALE=0.02 (of the papers' numbers), KANZOK_SCALE=SCALE, REPEAT=3 (flights),
+# LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers), KANZOK_SCALE=SCALE, REPEAT=3 (flights),
 # VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through). RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
@@ -24,11 +24,11 @@ while getopts b:d:o:q option; do
 done
 shift $((OPTIND - 1))
 sections=("$@")
-[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers kanzok schuetz guenther flights real targets)
+[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights real targets)
 if [ $quick = 1 ]; then
   : "${CONVERT:=100k}" "${LARGER:=200k}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
-: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
+: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${PROGRESSIVE:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
 : "${KANZOK_SCALE:=$SCALE}" "${RED_ROCKS:=$root/../shared/data/laz/large/red_rocks_4.0M.laz}"
 export PATH=$build/bin:$build/tests:$PATH
 if [ -z "$folder" ]; then
@@ -104,6 +104,24 @@ streaming() {
 rasterizers() {
   STRATA_BENCH_POINTS=$RASTER rasterizer_bench --benchmark_format=json --benchmark_min_time=0.3 2>/dev/null |
     table benchmark Mpoints/s
+}
+progressive() {
+  local bench=(--points "$PROGRESSIVE") flight=(--frames 60 --points 0.5,0.25) small=()
+  if [ $quick = 1 ]; then
+    small=(--small) bench=(--small) flight=(--frames 6 --size 320x180 --points 0.02)
+  fi
+  pool_bench "${small[@]}"
+  printf '\n'
+  progressive_bench "${bench[@]}"
+  made_store city "synthetic:city?points=$CITY&seed=1"
+  path_of city flythrough
+  printf '\nAlong the flythrough of the city (%s points), streamed:\n\n' "$CITY"
+  progressive_flight "$folder/city.strata" "$folder/city_flythrough.json" "${flight[@]}"
+  [ -e "$RED_ROCKS" ] || return 0
+  made_store red_rocks "$RED_ROCKS"
+  path_of red_rocks flythrough
+  printf '\nAlong the flythrough of red_rocks:\n\n'
+  progressive_flight "$folder/red_rocks.strata" "$folder/red_rocks_flythrough.json" "${flight[@]}"
 }
 suite() { strata-bench --suite "$1" --suite-scale "$2" 2>/dev/null; }
 kanzok() { suite kanzok "$KANZOK_SCALE"; }

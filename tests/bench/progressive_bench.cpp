@@ -1,16 +1,20 @@
-// Progressive drawing: Rumpler 2019, 4.1 and 4.2.2, with a made cloud of buildings at 1280 x 720. Prints one table
-// after the other. --small: a few 100 000 points, a few seconds. The camera moves a little in each frame that is timed,
-// so that no frame finds its picture finished.
+// Progressive drawing: Rumpler 2019, 4.1, with a made cloud of buildings at 1280 x 720, as tables of
+// docs/benchmarks.md. The camera moves a little in each frame that is timed, so that no frame finds its picture
+// finished.
+//
+// progressive_bench [--small | --points MILLION] [--pictures FOLDER]
+//
+// --small: 300 000 points, a few seconds. --pictures: also with the perfect shuffle, pictures of both (4.2.2).
 #include <algorithm>
 #include <bit>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 
 #include "core/error.h"
 #include "core/image.h"
 #include "render/progressive_rasterizer.h"
-#include "render/shuffle.h"
 #include "render/stopwatch.h"
 #include "viewer/bench/suite_clouds.h"
 
@@ -21,7 +25,7 @@ constexpr std::uint64_t kNoLimit = std::uint64_t{1} << 40;
 
 struct Scale {
   std::uint64_t points = 10'000'000;
-  int frames = 15;  ///< of a median
+  int frames = 9;  ///< of a median
   int width = 1280, height = 720;
   std::string pictures;  ///< folder; empty = none
 };
@@ -94,35 +98,6 @@ Times timeFrames(Rasterizer& rasterizer, const RenderList& list, const View& vie
 
 double millions(std::uint64_t points) { return static_cast<double>(points) * 1e-6; }
 
-/// 4.2.2: of the points in one frame's share of the pool, how many have the next point of their node there too.
-void shuffleTable(const Scale& scale) {
-  constexpr std::uint32_t kShares = 32;
-  std::printf("## 4.2.2: points whose successor is drawn in the same frame, pool in %u frames\n\n", kShares);
-  std::printf("| pool | perfect shuffle | keyed |\n|---|---|---|\n");
-  const std::uint32_t part = scale.points < 5'000'000 ? 64 : 1;
-  for (const std::uint32_t full : {1u << 25, 1u << 24, 30'000'000u, 25'000'000u, 20'000'000u}) {
-    const std::uint32_t size = full / part / 2 * 2;
-    const KeyedShuffle keyed(size, 1);
-    double together[2] = {};
-    for (const int way : {0, 1}) {
-      std::vector<std::uint32_t> points(kShares), pairs(kShares);
-      std::uint64_t last = kShares;
-      for (std::uint32_t i = 0; i < size; ++i) {
-        const std::uint32_t place = way == 0 ? perfectShuffle(i, size, perfectShuffles(size)) : keyed(i);
-        const std::uint64_t share = std::uint64_t{place} * kShares / size;
-        ++points[share];
-        pairs[share] += share == last;
-        last = share;
-      }
-      for (std::uint32_t s = 0; s < kShares; ++s)
-        together[way] = std::max(together[way], static_cast<double>(pairs[s]) / std::max(points[s], 1u));
-    }
-    std::printf("| %u%s | %.1f %% | %.1f %% |\n", size, std::has_single_bit(size) ? ", a power of two" : "",
-                100.0 * together[0], 100.0 * together[1]);
-    std::fflush(stdout);
-  }
-}
-
 void savePicture(const Scale& scale, const std::string& name, const Frame& frame) {
   if (!scale.pictures.empty())
     writePng(scale.pictures + "/" + name + ".png", {frame.width, frame.height, frame.colour});
@@ -138,18 +113,23 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
     plain->draw(scene.list, scene.view, {}, wanted);
     savePicture(scale, "final", wanted);
   }
-  std::printf("\n## Frames until pixels are final, of %.1f M points, and its turn\n\n",
+  std::printf("Frames until pixels are final after a jump of the camera, of %.1f M points in the pool:\n\n",
               millions(scene.list.pointCount));
   std::printf("| pool | shuffle | a frame | turn | 90 %% | 99 %% | 100 %% |\n|---|---|---|---|---|---|---|\n");
   struct Way {
     std::uint64_t pool;
     Shuffle shuffle;
+    std::vector<int> shares;
   };
   const std::uint64_t least = scene.list.pointCount * 11 / 10, square = std::bit_ceil(least);
-  for (const Way& way : {Way{least, Shuffle::keyed}, Way{2 * least, Shuffle::keyed}, Way{square, Shuffle::keyed},
-                         Way{square, Shuffle::perfect}}) {
+  std::vector<Way> ways{{least, Shuffle::keyed, {5, 10, 20, 40}}, {2 * least, Shuffle::keyed, {20}}};
+  if (!scale.pictures.empty()) {
+    ways.push_back({square, Shuffle::keyed, {20}});
+    ways.push_back({square, Shuffle::perfect, {20}});
+  }
+  for (const Way& way : ways) {
     const auto rasterizer = progressive(kNoLimit, way.pool, way.shuffle);
-    for (const int share : {5, 10, 20, 40}) {
+    for (const int share : way.shares) {
       fillPool(*rasterizer, scene.list, scene.view);
       rasterizer->draw(scene.list, scene.away, {}, frame);
       const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
@@ -182,7 +162,7 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
 
 /// Figure 4.1 and Table 4.2: the passes over the number of new points.
 void fillTable(const Scale& scale, const Scene& scene) {
-  std::printf("\n## Figure 4.1 and Table 4.2: milliseconds over the points of a frame\n\n");
+  std::printf("\nThe passes over the points of a frame (Figure 4.1, Table 4.2), milliseconds:\n\n");
   std::printf("| a frame | frame | upload | clear | reproject | fill | index | keep | read back | resolve |\n");
   std::printf("|---|---|---|---|---|---|---|---|---|---|\n");
   const auto rasterizer = progressive(kNoLimit, scene.list.pointCount * 11 / 10);
@@ -207,8 +187,8 @@ void halfFullTable(const Scale& scale, const Scene& scene) {
   }
   const std::uint64_t pool = scene.list.pointCount * 11 / 10;
   const auto rasterizer = progressive(pool, pool);
-  std::printf("\n## Table 4.3: a whole turn in one frame, %.1f M places, %.1f M points shown\n\n", millions(pool),
-              millions(half.pointCount));
+  std::printf("\nA whole turn in one frame (Table 4.3), pool of %.1f M places, %.1f M points shown:\n\n",
+              millions(pool), millions(half.pointCount));
   std::printf("| pool | turn | fill, ms | frame, ms |\n|---|---|---|---|\n");
   for (const RenderList* before : std::initializer_list<const RenderList*>{&half, &scene.list}) {
     fillPool(*rasterizer, *before, scene.view);
@@ -222,8 +202,8 @@ void halfFullTable(const Scale& scale, const Scene& scene) {
 
 /// Table 4.4: against drawing everything in each frame.
 void comparisonTable(const Scale& scale, const Scene& scene) {
-  std::printf("\n## Table 4.4: %.1f M points, %d x %d, milliseconds a frame\n\n", millions(scene.list.pointCount),
-              scale.width, scale.height);
+  std::printf("\nAgainst drawing everything (Table 4.4), %.1f M points, %d x %d, milliseconds a frame:\n\n",
+              millions(scene.list.pointCount), scale.width, scale.height);
   std::printf("| way | frame | drawing by OpenGL's clock |\n|---|---|---|\n");
   const auto row = [](const std::string& name, const Times& t) {
     std::printf("| %s | %.1f | %.1f |\n", name.c_str(), t.frame, t.gpu);
@@ -233,7 +213,8 @@ void comparisonTable(const Scale& scale, const Scene& scene) {
   room.uploadBytesPerFrame = kNoLimit;
   for (const Backend backend : {Backend::points, Backend::compute32, Backend::cpu}) {
     const auto plain = createRasterizer(backend, room, backend == Backend::cpu ? nullptr : createHeadlessContext());
-    row("everything, " + std::string(plain->name()), timeFrames(*plain, scene.list, scene.view, scale.frames));
+    const int frames = backend == Backend::points ? std::min(scale.frames, 3) : scale.frames;  // seconds each
+    row("everything, " + std::string(plain->name()), timeFrames(*plain, scene.list, scene.view, frames));
   }
   const std::uint64_t pool = scene.list.pointCount * 11 / 10;
   const auto rasterizer = progressive(kNoLimit, pool);
@@ -257,12 +238,11 @@ void comparisonTable(const Scale& scale, const Scene& scene) {
   std::snprintf(name, sizeof name, "progressive, %.2f M a frame, %.2f M written into a full pool", millions(n),
                 millions(n / 2));
   row(name, timeFrames(
-                *busy, [&](int i) -> const RenderList& { return lists[i / 40 % 2]; }, scene.view, 80 + scale.frames));
+                *busy, [&](int i) -> const RenderList& { return lists[i / 20 % 2]; }, scene.view, 40 + scale.frames));
 }
 
 int run(const Scale& scale) {
-  std::printf("# Progressive drawing on %s\n\n", progressive(1, 1000)->device().c_str());
-  shuffleTable(scale);
+  std::printf("Progressive drawing on %s.\n\n", progressive(1, 1000)->device().c_str());
   const Scene scene = makeScene(scale);
   convergenceTable(scale, scene);
   fillTable(scale, scene);
@@ -280,10 +260,12 @@ int main(int argc, char** argv) {
     const std::string argument = argv[i];
     if (argument == "--small") {
       scale = {300'000, 3, 320, 180, scale.pictures};
+    } else if (argument == "--points" && i + 1 < argc) {
+      scale.points = static_cast<std::uint64_t>(1e6 * std::atof(argv[++i]));
     } else if (argument == "--pictures" && i + 1 < argc) {
       scale.pictures = argv[++i];
     } else {
-      std::fprintf(stderr, "usage: progressive_bench [--small] [--pictures FOLDER]\n");
+      std::fprintf(stderr, "usage: progressive_bench [--small | --points MILLION] [--pictures FOLDER]\n");
       return 2;
     }
   }

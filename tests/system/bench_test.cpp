@@ -266,7 +266,7 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
   EXPECT_NE(text.find("**Machine**: "), std::string::npos);
   EXPECT_NE(text.find("| convert LAS, largest size | not measured | 5 M points/s | 9 M points/s |"), std::string::npos);
   for (const char* section : {"machine", "targets", "conversion", "store", "selection", "streaming", "rasterizers",
-                              "kanzok", "schuetz", "guenther", "flights", "real", "largest", "larger"}) {
+                              "progressive", "kanzok", "schuetz", "guenther", "flights", "real", "largest", "larger"}) {
     const std::string name = section;
     const std::size_t begin = text.find("<!-- " + name + ": tests/bench/all.sh " + name + " -->");
     ASSERT_NE(begin, std::string::npos) << name;
@@ -278,6 +278,25 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
     if (line.starts_with("<!-- ")) inside = !line.starts_with("<!-- end of ");
     EXPECT_TRUE(inside || !line.starts_with("|")) << line;
   }
+}
+
+TEST_F(Bench, TheSectionOfProgressiveDrawingIsWritten) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
+  const std::filesystem::path page = file("progressive.md");
+  std::filesystem::copy_file(STRATA_SOURCE_DIR "/docs/benchmarks.md", page);
+  const Finished done =
+      runProgram("/usr/bin/env", {"RED_ROCKS=" + file("none").string(), STRATA_SOURCE_DIR "/tests/bench/all.sh", "-b",
+                                  std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d",
+                                  file("progressive").string(), "-o", page.string(), "-q", "progressive"});
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  const std::string text = readWhole(page);
+  const std::size_t begin = text.find("<!-- progressive: "), end = text.find("<!-- end of progressive -->");
+  const std::string section = text.substr(begin, end - begin);
+  for (const char* table :
+       {"| pool | perfect shuffle | keyed |", "| whole nodes |", "| pieces |", "| 99 % |", "| reproject |", "| turn |",
+        "| everything, compute32 |", "written into a full pool |", "| progressive 0.02 M |"})
+    EXPECT_NE(section.find(table), std::string::npos) << table << " in\n" << section;
+  EXPECT_TRUE(section.ends_with(" 0 % |\n")) << "a wrong pixel in\n" << section;
 }
 
 // --- the papers' tables
