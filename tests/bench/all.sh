@@ -81,16 +81,16 @@ streaming() {
   made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
   made_store flown "synthetic:room?points=$FLOWN&seed=1" --node-points 16384
   path_of flown flythrough
-  first_seconds "$folder/flown_flythrough.json" "$folder/flown.json" 6
+  first_seconds "$folder/flown_flythrough.json" "$folder/flown.json" 4
   # shellcheck disable=SC2016
   printf 'Indoors, with and without the occlusion test (`indoors`):\n\n'
   streaming_bench indoors "$folder/room.strata" "$VIEWS"
   for what in slow ahead planes; do
     # shellcheck disable=SC2016
     case $what in
-      slow) printf '\nOne flight over disks that are instant, slow and broken (`slow`):\n\n' ;;
+      slow) printf '\nThe same pictures while a streamer works behind over either disk, then one flight over disks that are instant, slow and broken (`slow`):\n\n' ;;
       ahead) printf '\nWith and without looking ahead (`ahead`):\n\n' ;;
-      planes) printf '\nPlanes by need and all at once (`planes`):\n\n' ;;
+      planes) printf '\nPlanes by need and all at once, each frame whole before the next (`planes`):\n\n' ;;
     esac
     streaming_bench $what "$folder/flown.strata" "$folder/flown.json"
   done

@@ -4,7 +4,8 @@
 // streaming_bench indoors STORE [VIEWS]    with and without occlusion: random views from inside a store of
 // synthetic:room
 //
-// streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken
+// streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken; and of
+// the same pictures over the first two
 //
 // streaming_bench ahead STORE PATH.json    the same flight with and without looking ahead, from a slow disk
 //
@@ -34,6 +35,7 @@
 #include "io/synthetic_city.h"
 #include "io/synthetic_scanner.h"
 #include "lod/streamer.h"
+#include "tests/bench/troubled_disk.h"
 #include "viewer/bench/measures.h"
 #include "viewer/camera_path.h"
 #include "viewer/drawing.h"
@@ -51,78 +53,47 @@ double msSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// A disk with faults.
-class TroubledDisk final : public ByteSource {
- public:
-  struct Trouble {
-    std::chrono::microseconds latency{0};  ///< of every read
-    double bytesPerSecond = 0.0;           ///< 0 = as fast as it goes
-    double failing = 0.0, garbage = 0.0;   ///< shares of the reads
-  };
-
-  TroubledDisk(const std::string& path, const Trouble& trouble) : file_(openFile(path)), trouble_(trouble) {}
-
-  std::uint64_t size() const override { return file_->size(); }
-  const std::string& name() const override { return file_->name(); }
-  void read(std::uint64_t offset, std::span<std::byte> out) const override {
-    const std::uint64_t call = calls_.fetch_add(1);
-    auto wait = std::chrono::duration<double>(trouble_.latency);
-    if (trouble_.bytesPerSecond > 0.0)
-      wait += std::chrono::duration<double>(static_cast<double>(out.size()) / trouble_.bytesPerSecond);
-    if (wait.count() > 0.0) std::this_thread::sleep_for(wait);
-    const double dice = static_cast<double>((call * 0x9e3779b97f4a7c15u) >> 40) / static_cast<double>(1 << 24);
-    if (dice < trouble_.failing) throw Error(name(), "the disk failed");
-    file_->read(offset, out);
-    if (dice > 1.0 - trouble_.garbage) out[out.size() / 2] ^= std::byte{0x55};
-  }
-
- private:
-  const std::unique_ptr<ByteSource> file_;
-  const Trouble trouble_;
-  mutable std::atomic<std::uint64_t> calls_{1};  // the first reads, which open the store, meet no fault
-};
-
-std::shared_ptr<const Store> openWith(const std::string& store, const TroubledDisk::Trouble& trouble) {
-  return std::make_shared<const Store>(store, std::make_unique<TroubledDisk>(store + "/" + kPointsFile, trouble));
-}
-
 struct Flight {
   std::vector<double> frameMs;
   double missing = 0.0;  ///< mean share of the wanted nodes that a frame had to do without
   int wholeFrames = 0;   ///< frames that lacked nothing
-  double firstDetailMs = 0.0, lastDetailMs = 0.0;
+  double lastDetailMs = 0.0;
   StreamerStats stats;
 
   double percent(double p) const { return percentile(frameMs, p); }
 };
 
-/// Flies in real time; the first view is waited for.
-Flight fly(std::shared_ptr<const Store> store, const CameraPath& path, const StreamerOptions& options, bool ahead) {
-  const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
+/// Where the camera is `t` seconds after the path's beginning; held at its end.
+View viewOn(const CameraPath& path, double t) {
+  return viewAt(path, path.keys.front().t + std::clamp(t, 0.0, path.duration()), kPicture.width, kPicture.height);
+}
+
+/// Flies in real time; the first view is whole before the disk's troubles begin. Frames show what the streamer has, or
+/// `shown`, one list a frame.
+Flight fly(const TroubledStore& opened, const CameraPath& path, const StreamerOptions& options, bool ahead,
+           const std::vector<RenderList>* shown = nullptr) {
+  const StoreInfo& info = opened.store->info();
+  const DrawOptions draw = drawOptionsFor(info, info.bounds, std::nullopt);
   const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(Backend::cpu);
-  Streamer streamer(store, options);
-  const auto view = [&](double t) {
-    return viewAt(path, path.keys.front().t + std::clamp(t, 0.0, path.duration()), kPicture.width, kPicture.height);
-  };
-  Flight flight;
-  auto start = Clock::now();
-  streamer.setView(view(0.0));
+  Streamer streamer(opened.store, options);
+  streamer.setView(viewOn(path, 0.0));
   streamer.waitUntilComplete(120s);
-  flight.firstDetailMs = msSince(start);
+  opened.disk->begin();
+  Flight flight;
   Frame frame;
-  start = Clock::now();
+  auto start = Clock::now();
   for (int i = 0; i < path.frames(); ++i) {
     const double t = i / path.fps;
     std::this_thread::sleep_until(start +
                                   std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(t)));
     const auto began = Clock::now();
-    const View now = view(t);
+    const View now = viewOn(path, t);
     if (ahead)
-      streamer.setView(now, view(t + kAheadSeconds));
+      streamer.setView(now, viewOn(path, t + kAheadSeconds));
     else
       streamer.setView(now);
     const RenderList& list = streamer.beginFrame();
-    rasterizer->draw(list, now, draw, frame);
+    rasterizer->draw(shown != nullptr ? (*shown)[static_cast<std::size_t>(i)] : list, now, draw, frame);
     flight.frameMs.push_back(msSince(began));
     const double wanted = static_cast<double>(list.items.size()) + list.missingNodes;
     flight.missing += wanted > 0.0 ? list.missingNodes / wanted : 0.0;
@@ -130,10 +101,22 @@ Flight fly(std::shared_ptr<const Store> store, const CameraPath& path, const Str
   }
   flight.missing /= path.frames();
   start = Clock::now();
-  streamer.waitUntilComplete(120s);
+  if (shown == nullptr) streamer.waitUntilComplete(120s);
   flight.lastDetailMs = msSince(start);
   flight.stats = streamer.stats();
   return flight;
+}
+
+/// Stops at each frame until it lacks nothing; visit(list).
+template <typename Visit>
+StreamerStats flyWhole(const std::string& store, const CameraPath& path, const StreamerOptions& options, Visit visit) {
+  Streamer streamer(std::make_shared<const Store>(store), options);
+  for (int i = 0; i < path.frames(); ++i) {
+    streamer.setView(viewOn(path, i / path.fps));
+    streamer.waitUntilComplete(120s);
+    visit(streamer.beginFrame());
+  }
+  return streamer.stats();
 }
 
 // --- occlusion
@@ -146,7 +129,7 @@ struct Complete {
 };
 
 Complete complete(const std::string& storePath, const View& view, bool occlusion) {
-  const auto store = openWith(storePath, {});
+  const auto store = std::make_shared<const Store>(storePath);
   StreamerOptions options;
   options.selection.occlusion.enabled = occlusion;
   options.cacheBytes = std::uint64_t{4} << 30;
@@ -237,9 +220,35 @@ void printFlightHead() {
       "nodes loaded | failures | given up |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
+/// Frame times of the same pictures while a streamer is at work behind them with either disk: with lists of their own
+/// frames over the slow disk would be quicker, because less of what they want is there to be drawn.
+void samePictures(const std::string& store, const CameraPath& path) {
+  constexpr int kRounds = 5;
+  std::vector<RenderList> lists;
+  flyWhole(store, path, {}, [&](const RenderList& list) { lists.push_back(list); });
+  const std::pair<const char*, TroubledDisk::Trouble> disks[] = {{"instant", {}},
+                                                                 {"200 ms a read", {.latency = 200ms}}};
+  std::vector<double> p50[2], p99[2], most[2], ratio;
+  for (int round = 0; round < kRounds; ++round) {
+    for (const std::size_t i : {round % 2, 1 - round % 2}) {  // each is first as often as last
+      const Flight flight = fly(openWith(store, disks[i].second), path, {}, false, &lists);
+      p50[i].push_back(flight.percent(50));
+      p99[i].push_back(flight.percent(99));
+      most[i].push_back(flight.percent(100));
+    }
+    ratio.push_back(p99[1].back() / p99[0].back());
+  }
+  std::printf("| disk | p50 ms | p99 ms | max ms |\n|---|---|---|---|\n");
+  for (std::size_t i = 0; i < 2; ++i)
+    std::printf("| %s, same pictures | %.1f | %.1f | %.1f |\n", disks[i].first, percentile(p50[i], 50),
+                percentile(p99[i], 50), percentile(most[i], 50));
+  std::printf("\nMedians of %d flights each, in turns. p99 over the slow disk / instant: %.2f (%.2f to %.2f)\n\n",
+              kRounds, percentile(ratio, 50), percentile(ratio, 0), percentile(ratio, 100));
+}
+
 void slow(const std::string& store, const CameraPath& path) {
+  samePictures(store, path);
   printFlightHead();
-  fly(openWith(store, {}), path, {}, false);  // warms the page cache
   printFlight("instant", fly(openWith(store, {}), path, {}, false));
   printFlight("200 ms a read", fly(openWith(store, {.latency = 200ms}), path, {}, false));
   StreamerOptions four;
@@ -259,19 +268,22 @@ void ahead(const std::string& store, const CameraPath& path) {
   }
 }
 
+/// Each frame is whole before the next, so that bytes do not hang on the machine's speed.
 void planes(const std::string& store, const CameraPath& path) {
-  printFlightHead();
-  StreamerOptions full, shown;
+  std::printf("| read | MB, neighbours together | MB, each node alone |\n|---|---|---|\n");
+  StreamerOptions full, need, shown;
   full.leastPrecision = Precision::full30;
   shown.selection.shown = ColourMode::rgb;
-  for (const bool alone : {false, true}) {  // each node by itself: without the gaps that are read to save a read
-    for (StreamerOptions* options : {&full, &shown}) options->together.bytes = alone ? 0 : ReadLimits{}.bytes;
-    StreamerOptions need;
-    need.together = full.together;
-    const std::string how = alone ? ", each node alone" : "";
-    printFlight(("all planes" + how).c_str(), fly(openWith(store, {}), path, full, false));
-    printFlight(("precision by need" + how).c_str(), fly(openWith(store, {}), path, need, false));
-    printFlight(("and only the colour" + how).c_str(), fly(openWith(store, {}), path, shown, false));
+  const std::pair<const char*, StreamerOptions*> ways[] = {
+      {"all planes", &full}, {"precision by need", &need}, {"and only the colour", &shown}};
+  for (const auto& [name, options] : ways) {
+    std::printf("| %s |", name);
+    for (const bool alone : {false, true}) {  // without the gaps that are read to save a read
+      options->together.bytes = alone ? 0 : ReadLimits{}.bytes;
+      const StreamerStats stats = flyWhole(store, path, *options, [](const RenderList&) {});
+      std::printf(" %.1f |", 1e-6 * static_cast<double>(stats.bytesRead));
+    }
+    std::printf("\n");
   }
 }
 
