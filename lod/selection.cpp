@@ -77,7 +77,7 @@ class Walk {
     const NodeRecord& record = nodes_[node];
     const Contour contour = contourOf(record);
     const double reach = reach_.empty() ? 0.0 : static_cast<double>(reach_[node]);
-    if (!contourInView(contour, reach, volume_)) return std::nullopt;
+    if (!contourInView(contour, reach, volume_) || !mayBeLeftBy(options_.clip, contour, reach)) return std::nullopt;
 
     const ContourOnScreen screen = projectContour(contour, reach, volume_);
     const double wanted = options_.pointsPerPixel * screen.pixelsPerMetre * screen.pixelsPerMetre * screen.facing;

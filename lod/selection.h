@@ -8,6 +8,7 @@
 #include "core/node_data.h"
 #include "core/view.h"
 #include "io/store.h"
+#include "lod/clip_region.h"
 #include "lod/coarse_depth.h"
 #include "lod/contour.h"
 
@@ -23,6 +24,7 @@ struct SelectionOptions {
   OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
   /// What the streamer reads of a node beside its positions: what this shows. Nothing: colour, intensity and class.
   std::optional<ColourMode> shown{};
+  Clip clip{};  ///< nodes of which nothing is left by it are not drawn, read or counted; it does not cut the others
 
   bool operator==(const SelectionOptions&) const = default;
 };

@@ -230,6 +230,7 @@ bool Streamer::stillWanted(const LoadRequest& request) {
   const LodTask task = newestTask();
   const Contour contour = contourOf(store_->hierarchy().nodes[request.node]);
   const double reach = static_cast<double>(index_.reach[request.node]);
+  if (!mayBeLeftBy(task.selection.clip, contour, reach)) return false;
   if (request.ahead && task.ahead && contourInView(contour, reach, ViewVolume(*task.ahead))) return true;
   if (!contourInView(contour, reach, ViewVolume(task.view))) return false;
   if (request.node == 0 || !task.selection.occlusion.enabled) return true;
