@@ -71,6 +71,13 @@ std::optional<ColourMode> shownBy(const DrawOptions& draw) {
   return draw.colour;
 }
 
+bool followDrawing(const DrawOptions& draw, SelectionOptions& selection) {
+  const SelectionOptions before = selection;
+  selection.shown = shownBy(draw);
+  selection.clip = draw.clip;
+  return !(selection == before);
+}
+
 std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend) {
   if (backend == Backend::cpu) return createRasterizer(backend, {}, nullptr);
   if (backend != Backend::automatic) return createRasterizer(backend, {}, createHeadlessContext());

@@ -7,6 +7,7 @@
 #include "core/frame.h"
 #include "core/image.h"
 #include "io/store.h"
+#include "lod/selection.h"
 #include "render/rasterizer.h"
 
 namespace strata {
@@ -25,6 +26,9 @@ DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::option
 /// SelectionOptions::shown for such a drawing: what it looks at of the points beside their positions. Nothing, that is
 /// all that is usual, where some classes are left out.
 std::optional<ColourMode> shownBy(const DrawOptions& draw);
+
+/// What is loaded follows from what is drawn: sets SelectionOptions::shown and clip. True when that changed them.
+bool followDrawing(const DrawOptions& draw, SelectionOptions& selection);
 
 /// A rasterizer without a window. `automatic` falls back to the cpu where there is no OpenGL.
 std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend);

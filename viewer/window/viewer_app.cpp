@@ -367,7 +367,7 @@ class ViewerApp {
 
   /// What is loaded follows from what is drawn.
   void select() {
-    settings_.selection.shown = shownBy(settings_.draw);
+    followDrawing(settings_.draw, settings_.selection);
     layers_.setSelection(settings_.selection);
   }
 
@@ -393,7 +393,7 @@ class ViewerApp {
     drawSpinner(stats_);
     drawHint(tools_.measure.hint());
     bool changed = drawSettingsPanel();
-    if (shownBy(settings_.draw) != settings_.selection.shown) select();  // classes may have been hidden
+    if (followDrawing(settings_.draw, settings_.selection)) select();  // classes hidden, a clip box moved
     if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
     const ToolsRequest request = drawToolsPanel(tools_, control_.view(), scene_.bounds);
     if (request.layersChanged) layers_.setShown(tools_.shown);
