@@ -7,9 +7,12 @@
 #   -q       quick: everything a hundredth, only to see that it works
 #   SECTION  machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights
 #            real largest larger targets; default: all but larger and largest
-# Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M", CITY=50e6 and ROOM=20e6 (points of the stores that are flown through),
-# LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers), KANZOK_SCALE=SCALE, REPEAT=3 (flights),
-# VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through). RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
+# Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M:1G" (points[:--memory]), CITY=50e6 and ROOM=20e6 (points
+# of the stores that are flown through), LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers),
+# KANZOK_SCALE=SCALE, REPEAT=3 (flights), VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through).
+# RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
+# Disk: larger takes 48 bytes a point of one scan at a time; what earlier calls measured into the same FOLDER stays in its
+# tables, so it may be run scan by scan. largest takes 21 bytes a point: 1e9 points fit 25 GB, 2e9 fit 45 GB.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=$root/build/release folder='' page=$root/docs/benchmarks.md quick=0
@@ -26,9 +29,9 @@ shift $((OPTIND - 1))
 sections=("$@")
 [ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights real targets)
 if [ $quick = 1 ]; then
-  : "${CONVERT:=100k}" "${LARGER:=200k}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
+  : "${CONVERT:=100k}" "${LARGER:=200k 300k:512M}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
-: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${PROGRESSIVE:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
+: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M:1G}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${PROGRESSIVE:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
 : "${KANZOK_SCALE:=$SCALE}" "${RED_ROCKS:=$root/../shared/data/laz/large/red_rocks_4.0M.laz}"
 export PATH=$build/bin:$build/tests:$PATH
 if [ -z "$folder" ]; then
@@ -40,9 +43,11 @@ folder=$(realpath "$folder")
 
 note() { printf '%s %s\n' "$(date +%T)" "$*" >&2; }
 table() { python3 "$root/tests/bench/tables.py" "$@"; }
+# quietly COMMAND...: what it says is shown only where it fails
+quietly() { "$@" 2>"$folder/messages" || { tail -n 3 "$folder/messages" >&2; return 1; }; }
 # made_store NAME INPUT OPTIONS...: FOLDER/NAME.strata, made where it is not there
 made_store() {
-  [ -e "$folder/$1.strata/store.json" ] || strata-convert "$2" -o "$folder/$1.strata" --json "${@:3}" >/dev/null 2>&1
+  [ -e "$folder/$1.strata/store.json" ] || quietly strata-convert "$2" -o "$folder/$1.strata" --json "${@:3}" >/dev/null
 }
 path_of() { strata-bench --make-path "$2" "$folder/$1.strata" >"$folder/$1_$2.json"; }
 # first_seconds FROM TO SECONDS: the path FROM, cut off after so long
@@ -54,14 +59,14 @@ for key in path["keys"]: key["t"] *= min(1.0, float(sys.argv[3]) / whole)
 json.dump(path, open(sys.argv[2], "w"))' "$1" "$2" "$3"
 }
 # fly STORE PATH OUT OPTIONS...
-fly() { strata-bench "$folder/$1.strata" --path "$2" -o "$folder/$3" --backend cpu --json "${@:4}" >/dev/null 2>&1; }
+fly() { quietly strata-bench "$folder/$1.strata" --path "$2" -o "$folder/$3" --backend cpu --json "${@:4}" >/dev/null; }
 
 machine() { table machine "$folder" "$root"; }
 conversion() { # shellcheck disable=SC2086
-  "$root/tests/bench/convert.sh" -b "$build" $CONVERT
+  "$root/tests/bench/convert.sh" -b "$build" -d "$folder/scans" $CONVERT
 }
 larger() { # shellcheck disable=SC2086
-  "$root/tests/bench/convert.sh" -b "$build" -r 1 $LARGER
+  "$root/tests/bench/convert.sh" -b "$build" -d "$folder/scans" -r 1 -n -s "$folder/larger" $LARGER
 }
 store() {
   made_store store_city "synthetic:city?points=10e6&seed=1"
@@ -76,7 +81,7 @@ store() {
   for ((i = 1; i < ${#infos[@]}; i += 2)); do strata-info "${infos[i]}" --json >"$folder/info_$i.json"; infos[i]=$folder/info_$i.json; done
   table planes "${infos[@]}"
 }
-selection() { selection_bench --benchmark_format=json 2>/dev/null | table benchmark nodes hidden occluders Mpoints tested; }
+selection() { quietly selection_bench --benchmark_format=json | table benchmark nodes hidden occluders Mpoints tested; }
 streaming() {
   made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
   made_store flown "synthetic:room?points=$FLOWN&seed=1" --node-points 16384
@@ -102,7 +107,7 @@ streaming() {
   streaming_bench open "$NODES"
 }
 rasterizers() {
-  STRATA_BENCH_POINTS=$RASTER rasterizer_bench --benchmark_format=json --benchmark_min_time=0.3 2>/dev/null |
+  STRATA_BENCH_POINTS=$RASTER quietly rasterizer_bench --benchmark_format=json --benchmark_min_time=0.3 |
     table benchmark Mpoints/s
 }
 progressive() {
@@ -123,7 +128,7 @@ progressive() {
   printf '\nAlong the flythrough of red_rocks:\n\n'
   progressive_flight "$folder/red_rocks.strata" "$folder/red_rocks_flythrough.json" "${flight[@]}"
 }
-suite() { strata-bench --suite "$1" --suite-scale "$2" 2>/dev/null; }
+suite() { quietly strata-bench --suite "$1" --suite-scale "$2"; }
 kanzok() { suite kanzok "$KANZOK_SCALE"; }
 schuetz() { suite schuetz "$SCALE"; }
 guenther() { suite guenther "$SCALE"; }
@@ -165,10 +170,10 @@ real() {
 }
 largest() {
   if [ ! -e "$folder/largest.strata/store.json" ]; then
-    strata-convert "synthetic:city?points=$LARGEST&seed=1" -o "$folder/largest.strata" --resume --json 2>/dev/null |
+    quietly strata-convert "synthetic:city?points=$LARGEST&seed=1" -o "$folder/largest.strata" --resume --json |
       tail -n 1 >"$folder/largest.json"
   fi
-  [ ! -s "$folder/largest.json" ] || table conversion "$folder/largest.json"
+  [ ! -s "$folder/largest.json" ] || table conversion "$folder/largest.json" "$folder"
   described "The largest city" largest
 }
 targets() { table targets "$folder/sections"; }
@@ -187,7 +192,9 @@ fi
 section=${sections[0]}
 note "$section"
 start=$SECONDS
+stamp=$(table stamp "$root")
 "$section" >"$folder/sections/$section.part"
+[ "$section" = machine ] || [ "$section" = targets ] || printf '\n%s\n' "$stamp" >>"$folder/sections/$section.part"
 mv "$folder/sections/$section.part" "$folder/sections/$section.md"
 table put "$page" "$section" "$folder/sections/$section.md"
 note "$section took $((SECONDS - start)) s"

@@ -2,20 +2,23 @@
 # Makes the conversion tables of docs/benchmarks.md: a synthetic city as LAS 1.2 format 2 (26 bytes a point) and LAZ,
 # converted with default options. Prints Markdown; what it is doing goes to stderr. Inputs are made where FOLDER has
 # none, one at a time, and those that were made are deleted as soon as they are measured.
-# usage: tests/bench/convert.sh [-d FOLDER] [-b BUILD] [-r RUNS] [-m MEMORY] [-k] [POINTS...]
-#   FOLDER  inputs (city_50M.las ...) and scratch; needs up to 26 + 35 bytes a point of the largest size (default: a new
-#           one under TMPDIR)      BUILD  folder with bin/ and tests/ (default: build/release)
-#   RUNS    medians over so many (default: 3 below 200 million points, else 1)      MEMORY  --memory (default 2G)
-#   -k      keep inputs that were made      POINTS  default: 10M 50M 200M 500M
+# usage: tests/bench/convert.sh [-d FOLDER] [-b BUILD] [-r RUNS] [-s RESULTS] [-n] [-k] [POINTS[:MEMORY]...]
+#   FOLDER  inputs (city_50M.las ...) and scratch; needs 48 bytes a point of the largest size (default: a new one under
+#           TMPDIR)                BUILD  folder with bin/ and tests/ (default: build/release)
+#   RUNS    medians over so many (default: 3 below 200 million points, else 1)
+#   RESULTS keeps what is measured; the tables hold what earlier calls left there too (default: nothing is kept)
+#   -n      without PCL's converter      -k  keep inputs that were made
+#   POINTS[:MEMORY]  and --memory, 2G where it is not said; default: 10M 50M 200M 500M
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-build=$root/build/release folder='' runs='' memory=2G keep=0
-while getopts d:b:r:m:k option; do
+build=$root/build/release folder='' runs='' kept='' pcl=1 keep=0
+while getopts d:b:r:s:nk option; do
   case $option in
     d) folder=$OPTARG ;;
     b) build=$OPTARG ;;
     r) runs=$OPTARG ;;
-    m) memory=$OPTARG ;;
+    s) kept=$OPTARG ;;
+    n) pcl=0 ;;
     k) keep=1 ;;
     *) exit 2 ;;
   esac
@@ -30,10 +33,12 @@ done
 made_folder=0
 if [ -z "$folder" ]; then folder=$(mktemp -d) made_folder=1; fi
 mkdir -p "$folder"
-results=$(mktemp -d)
+results=${kept:-$(mktemp -d)}
+mkdir -p "$results"
 # shellcheck disable=SC2317  # called by the trap
 clean_up() {
-  rm -rf "$results" "$folder/timed.strata" "$folder/timed.strata.building" "$folder/making".* "$folder/outofcore"
+  [ -n "$kept" ] || rm -rf "$results"
+  rm -rf "$folder/timed.strata" "$folder/timed.strata.building" "$folder/making".* "$folder/outofcore"
   [ "$made_folder" = 0 ] || rm -rf "$folder"
 }
 trap clean_up EXIT
@@ -49,16 +54,18 @@ make_input() {
   mv "$folder/making.$2" "$folder/city_$1.$2"
 }
 
-# convert_once SIZE ENDING: appends one line of JSON to RESULTS/SIZE.ENDING
+# convert_once INPUT MEMORY: prints one line of JSON
 convert_once() {
   rm -rf "$folder/timed.strata"
-  cat "$folder/city_$1.$2" >/dev/null # warm where it fits; the table says so
-  strata-convert "$folder/city_$1.$2" -o "$folder/timed.strata" --memory "$memory" --force --json 2>/dev/null |
-    tail -n 1 >>"$results/$1.$2"
+  cat "$1" >/dev/null # warm where it fits
+  strata-convert "$1" -o "$folder/timed.strata" --memory "$2" --force --json 2>"$results/messages" | tail -n 1 ||
+    { cat "$results/messages" >&2; return 1; }
   rm -rf "$folder/timed.strata"
 }
 
-for size in "${sizes[@]}"; do
+for each in "${sizes[@]}"; do
+  size=${each%%:*} memory=2G
+  case $each in *:*) memory=${each#*:} ;; esac
   points=$(points_of "$size")
   for ending in las laz; do
     input=$folder/city_$size.$ending
@@ -67,17 +74,20 @@ for size in "${sizes[@]}"; do
       [ $ending = las ] && need=$((points * 48)) || need=$((points * 35))
       if [ "$(free_bytes)" -lt "$need" ]; then
         note "$size $ending left out: $(free_bytes) bytes free, $need needed"
-        echo "| $size | ${ending^^} | left out: the disk has not enough room |" >>"$results/left_out"
+        echo "left out: the disk has not enough room" >"$results/$size:$memory.$ending.why"
         continue
       fi
       make_input "$size" "$ending"
       made=1
     fi
     times=${runs:-$([ "$points" -ge 200000000 ] && echo 1 || echo 3)}
+    rm -f "$results/measuring"
     for run in $(seq "$times"); do
-      note "city_$size.$ending run $run of $times"
-      convert_once "$size" "$ending"
+      note "city_$size.$ending, --memory $memory, run $run of $times"
+      convert_once "$input" "$memory" >>"$results/measuring"
     done
+    mv "$results/measuring" "$results/$size:$memory.$ending"
+    rm -f "$results/$size:$memory.$ending.why"
     if [ "$ending" = laz ]; then
       note "LASzip alone on city_$size.laz"
       laszip_decode "$input" >"$results/$size.decode"
@@ -86,19 +96,21 @@ for size in "${sizes[@]}"; do
   done
 done
 
-# PCL's own converter on 10 million points, or on as many as the smallest size has.
+# PCL's own converter on 10 million points, or on as many as the first size has.
 pcl_size=10M
-case " ${sizes[*]} " in *" 10M "*) ;; *) pcl_size=${sizes[0]} ;; esac
-if command -v pcl_outofcore_process >/dev/null; then
+case " ${sizes[*]} " in *" 10M "*) ;; *) pcl_size=${sizes[0]%%:*} ;; esac
+if [ $pcl = 0 ]; then
+  note "without PCL's converter"
+elif command -v pcl_outofcore_process >/dev/null; then
   note "pcl_outofcore_process on $pcl_size"
   make_input "$pcl_size" pcd
   rm -rf "$folder/outofcore"
   python3 "$root/tests/bench/time_command.py" "$folder/outofcore" \
     pcl_outofcore_process -depth 5 -gen_lod -overwrite "$folder/city_$pcl_size.pcd" "$folder/outofcore" \
-    >"$results/pcl" 2>/dev/null || { rm -f "$results/pcl"; echo "it failed" >"$results/pcl_why"; }
+    >"$results/pcl_$pcl_size" 2>/dev/null || { rm -f "$results/pcl_$pcl_size"; echo "it failed" >"$results/pcl_why"; }
   rm -rf "$folder/outofcore" "$folder/city_$pcl_size.pcd"
 else
   echo "package pcl-tools is not installed" >"$results/pcl_why"
 fi
 
-python3 "$root/tests/bench/convert_table.py" "$results" "$pcl_size" "$memory" "${sizes[@]}"
+python3 "$root/tests/bench/convert_table.py" "$results"

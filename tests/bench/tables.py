@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Tables of docs/benchmarks.md out of what the programs print, for tests/bench/all.sh.
 usage: tables.py put PAGE SECTION FILE | machine FOLDER ROOT | benchmark COUNTER... <JSON | planes NAME INFO.json...
-       flights NAME REPORT_FOLDER... | store TITLE REPORT_FOLDER | conversion JSON | targets FOLDER"""
+       flights NAME REPORT_FOLDER... | store TITLE REPORT_FOLDER | conversion JSON FOLDER |
+       stamp ROOT | targets FOLDER"""
 import json
 import os
 import re
@@ -44,17 +45,24 @@ def put(page, section, file):
     os.replace(page + ".part", page)
 
 
+def stamp(root):
+    """What was measured, when, and how busy the machine was with other things."""
+    commit = subprocess.run(["git", "-C", root, "describe", "--always"], capture_output=True, text=True).stdout
+    changed = subprocess.run(["git", "-C", root, "status", "--porcelain", "-uno", "--", ".", ":!docs"], capture_output=True, text=True)
+    commit = commit.strip() + ("-dirty" if changed.stdout else "")  # the page that is being written does not count
+    when = subprocess.run(["date", "-u", "+%Y-%m-%d"], capture_output=True, text=True).stdout
+    print(f"Source: {commit or 'unknown'}, {when.strip()}; load {os.getloadavg()[0]:.1f} when it began.")
+
+
 def machine(folder, root):
     cpu = re.search(r"model name\s*: (.*)", open("/proc/cpuinfo").read())
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") / 2**30
     system = re.search(r'PRETTY_NAME="(.*)"', open("/etc/os-release").read())
-    commit = subprocess.run(["git", "-C", root, "describe", "--always", "--dirty"], capture_output=True, text=True).stdout
-    when = subprocess.run(["date", "-u", "+%Y-%m-%d"], capture_output=True, text=True).stdout
     disk = os.statvfs(folder)
     print(f"**Machine**: {len(os.sched_getaffinity(0))} cores of {cpu.group(1) if cpu else 'an unknown processor'}, "
           f"{memory:.0f} GiB, {disk.f_bavail * disk.f_frsize / 1e9:.0f} GB of disk free, "
-          f"{system.group(1) if system else 'Linux'}; load {os.getloadavg()[0]:.1f} when it began. "
-          f"Source: {commit.strip() or 'unknown'}, {when.strip()}.")
+          f"{system.group(1) if system else 'Linux'}. ", end="")
+    stamp(root)
 
 
 def benchmark(*counters):
@@ -117,12 +125,17 @@ def store(title, folder):
           f"{s['points.bin']}, from {s['sources']}; store {s['hash']}.\n")
 
 
-def conversion(file):
+def conversion(file, folder):
+    """`folder` is on the disk that held the store and the temporary files."""
     c = json.load(open(file))
+    disk = os.statvfs(folder)
+    each = (c["temp_peak_bytes"] + c["output_bytes"]) / c["points"]
+    room = disk.f_bavail * disk.f_frsize + c["output_bytes"]
     print(f"Converted in {c['seconds']:.0f} s ({c['points_per_second'] / 1e6:.2f} M points/s, "
           f"{c['cpu_seconds'] / c['points'] * 1e6:.2f} µs of CPU a point), peak memory {c['peak_rss_bytes'] / 2**20:.0f} MiB, "
           f"temporary disk {c['temp_peak_bytes'] / 1e9:.2f} GB, store {c['output_bytes'] / 1e9:.2f} GB "
-          f"({c['output_bytes'] / c['points']:.2f} bytes a point).\n")
+          f"({c['output_bytes'] / c['points']:.2f} bytes a point). A billion points take {each:.0f} GB of disk while they are "
+          f"converted; the {room / 1e9:.0f} GB free here would have held {room / each / 1e9:.1f} billion.\n")
 
 
 class Targets:
@@ -150,7 +163,7 @@ class Targets:
 
 def targets(folder):
     t = Targets(folder)
-    las = r"^\| \S+ \| LAS \| \S+ s \| (\S+) M \| (\S+) µs \| \S+ GiB \| \S+ GB \((\S+)\) \| (\S+) \|"
+    las = r"^\| \S+ \| LAS \| \S+ \| \S+ s \| (\S+) M \| (\S+) µs \| \S+ GiB \| \S+ GB \((\S+)\) \| (\S+) \|"
     t.judge("convert LAS, largest size", t.find("conversion", las, 1, True), 5, 9, " M points/s", True)
     t.judge("convert LAS, CPU a point", t.find("conversion", las, 2, True), 0.38, 0.38, " µs")
     t.judge("temporary disk against the plain input", t.find("conversion", las, 3, True), 1.0, 0.5, " x")
@@ -174,7 +187,7 @@ def targets(folder):
             (float(opened.group(1)) + float(opened.group(2))) / 1e3 if opened else None, 1, 0.2, " s")
 
 
-COMMANDS = {f.__name__: f for f in (put, machine, benchmark, planes, flights, store, conversion, targets)}
+COMMANDS = {f.__name__: f for f in (put, machine, benchmark, planes, flights, store, conversion, stamp, targets)}
 if len(sys.argv) < 2 or sys.argv[1] not in COMMANDS:
     sys.exit(__doc__)
 COMMANDS[sys.argv[1]](*sys.argv[2:])

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <tuple>
@@ -272,11 +273,12 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
     ASSERT_NE(begin, std::string::npos) << name;
     EXPECT_NE(text.find("<!-- end of " + name + " -->", begin), std::string::npos) << name;
   }
-  // No table stands outside of the marks.
+  // No table and nothing measured stands outside of the marks.
+  const std::regex measured("[0-9] ?(%|(s|ms|µs|ns|[GM]B|[GM]iB|[GM]B/s|times|points/s)([^A-Za-z/]|$))");
   bool inside = false;
   for (const std::string& line : linesOf(text)) {
     if (line.starts_with("<!-- ")) inside = !line.starts_with("<!-- end of ");
-    EXPECT_TRUE(inside || !line.starts_with("|")) << line;
+    EXPECT_TRUE(inside || !(line.starts_with("|") || std::regex_search(line, measured))) << line;
   }
 }
 
@@ -296,7 +298,29 @@ TEST_F(Bench, TheSectionOfProgressiveDrawingIsWritten) {
        {"| pool | perfect shuffle | keyed |", "| whole nodes |", "| pieces |", "| 99 % |", "| reproject |", "| turn |",
         "| everything, compute32 |", "written into a full pool |", "| progressive 0.02 M |"})
     EXPECT_NE(section.find(table), std::string::npos) << table << " in\n" << section;
-  EXPECT_TRUE(section.ends_with(" 0 % |\n")) << "a wrong pixel in\n" << section;
+  EXPECT_NE(section.find(" 0 % |\n\nSource: "), std::string::npos) << "a wrong pixel in\n" << section;
+}
+
+TEST_F(Bench, ConversionsMeasuredOneByOneShareTheirTables) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
+  const auto convert = [](const std::string& size) {
+    return runProgram(STRATA_SOURCE_DIR "/tests/bench/convert.sh",
+                      {"-b", std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d", file("scans").string(),
+                       "-s", file("measured").string(), "-r", "1", "-n", size});
+  };
+  ASSERT_EQ(convert("20k").exitCode, 0);
+  const Finished done = convert("10k:512M");
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  std::vector<std::string> starts;
+  for (const std::string& line : linesOf(done.out))
+    if (line.starts_with("| 10k | LA") || line.starts_with("| 20k | LA")) starts.push_back(line.substr(0, 20));
+  const std::vector<std::string> both{"| 10k | LAS | 512M |", "| 10k | LAZ | 512M |", "| 20k | LAS | 2G | 0",
+                                      "| 20k | LAZ | 2G | 0"};
+  std::vector<std::string> twice = both;  // the table of totals, then that of the stages
+  twice.insert(twice.end(), both.begin(), both.end());
+  ASSERT_EQ(starts.size(), twice.size()) << done.out;
+  for (std::size_t i = 0; i < twice.size(); ++i) EXPECT_EQ(starts[i].substr(0, 17), twice[i].substr(0, 17));
+  EXPECT_TRUE(std::filesystem::is_empty(file("scans")));
 }
 
 // --- the papers' tables
