@@ -21,6 +21,7 @@ struct RenderList {
   std::vector<RenderItem> items;   ///< in a fixed order for a given view and set of resident nodes
   std::uint64_t pointCount = 0;    ///< sum over items; kept under 2^32 - 1
   std::uint32_t missingNodes = 0;  ///< wanted, but not resident (a parent stands in)
+  std::uint32_t coarseNodes = 0;   ///< of the items: drawn with fewer position bits or columns than wanted
   std::uint64_t serial = 0;        ///< counts LOD passes
 };
 

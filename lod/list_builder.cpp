@@ -140,6 +140,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, std::optional
   const std::uint32_t missing = pass_ * kMarks + kMissing;
   out.list.pointCount = 0;
   out.list.missingNodes = result.overCapacity;
+  out.list.coarseNodes = 0;
   for (std::size_t i = 0; i < wanted_.size(); ++i) {
     const SelectedNode& wanted = wanted_[i];
     const std::uint32_t parent = parents_[wanted.node];
@@ -177,6 +178,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, std::optional
     }
     marks_[wanted.node] = drawn;
     drawn_.push_back(wanted.node);
+    out.list.coarseNodes += poor ? 1 : 0;
     const std::uint32_t points = std::min(wanted.pointCount, found_[i]->pointCount());
     out.list.items.push_back({std::move(found_[i]), points});
     out.list.pointCount += points;

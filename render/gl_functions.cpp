@@ -37,8 +37,11 @@ bool hasExtension(const GlFunctions& functions, std::string_view name) {
 }
 
 std::string glRenderer(const GlFunctions& functions) {
-  const unsigned char* text = functions.GetString(gl::kRenderer);
-  return text == nullptr ? "unknown" : reinterpret_cast<const char*>(text);
+  const auto text = [&](unsigned name) {
+    const unsigned char* found = functions.GetString(name);
+    return std::string(found == nullptr ? "unknown" : reinterpret_cast<const char*>(found));
+  };
+  return text(gl::kRenderer) + ", driver " + text(gl::kVersion);
 }
 
 bool isSoftwareRenderer(const std::string& renderer) {

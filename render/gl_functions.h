@@ -109,6 +109,7 @@ inline constexpr unsigned kColour = 0x1800;
 inline constexpr unsigned kDepth = 0x1801;
 inline constexpr unsigned kDepthComponent = 0x1902;
 inline constexpr unsigned kRenderer = 0x1F01;
+inline constexpr unsigned kVersion = 0x1F02;
 inline constexpr unsigned kLowerLeft = 0x8CA1;
 inline constexpr unsigned kZeroToOne = 0x935F;
 inline constexpr unsigned kNegativeOneToOne = 0x935E;
@@ -151,7 +152,7 @@ GlFunctions loadGlFunctions(GlContext& context);
 
 bool hasExtension(const GlFunctions& functions, std::string_view name);
 
-/// "llvmpipe (LLVM 15.0.6, 256 bits)".
+/// The device and its driver: "llvmpipe (LLVM 15.0.6, 256 bits), driver 4.5 (Core Profile) Mesa 22.3.6".
 std::string glRenderer(const GlFunctions& functions);
 /// True where OpenGL runs on the CPU: the cpu rasterizer is faster there.
 bool isSoftwareRenderer(const std::string& renderer);

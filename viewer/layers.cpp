@@ -18,6 +18,7 @@ void appendList(const RenderList& list, RenderList& merged) {
   merged.items.insert(merged.items.end(), list.items.begin(), list.items.end());
   merged.pointCount += list.pointCount;
   merged.missingNodes += list.missingNodes;
+  merged.coarseNodes += list.coarseNodes;
   merged.serial += list.serial;
 }
 
@@ -67,6 +68,7 @@ const RenderList& Layers::beginFrame() {
   merged_.items.clear();
   merged_.pointCount = 0;
   merged_.missingNodes = 0;
+  merged_.coarseNodes = 0;
   merged_.serial = 0;
   for (std::size_t i = 0; i < streamers_.size(); ++i) {
     if (shown_[i]) appendList(streamers_[i]->beginFrame(), merged_);

@@ -260,8 +260,13 @@ TEST(Compare, SaysInWhatTheRunsDiffer) {
   BenchReport b = someReport();
   b.measures.backend = "points";
   b.options = {{"size", "640x480"}};
+  a.commit = "one";
+  b.commit = "two";
+  a.storeHash = "aa";
+  b.storeHash = "bb";
   const Comparison comparison = compareReports("A", reportJson(a), "B", reportJson(b));
-  EXPECT_EQ(comparison.differences, (std::vector<std::string>{"backend: cpu / points", "size: 1920x1080 / 640x480"}));
+  EXPECT_EQ(comparison.differences, (std::vector<std::string>{"commit: one / two", "backend: cpu / points",
+                                                              "store's hash: aa / bb", "size: 1920x1080 / 640x480"}));
 }
 
 TEST(Compare, RefusesWhatIsNoReport) {
@@ -277,11 +282,69 @@ TEST(Compare, CallsNothingWorseThatStraysAsFarByItself) {
     a.runs.push_back(a.measures);
     a.runs.back().p50Ms *= factor;
   }
-  BenchReport b = a;
-  b.measures.p50Ms *= 1.15;
+  const auto slower = [&](double factor) {
+    BenchReport b = a;
+    b.measures.p50Ms *= factor;
+    for (BenchMeasures& run : b.runs) run.p50Ms *= factor;
+    return compareReports("A", reportJson(a), "B", reportJson(b));
+  };
+  EXPECT_FALSE(anyWorse(slower(1.15), 0.05));
+  EXPECT_FALSE(anyWorse(slower(1.21), 0.05))
+      << "beyond the noise, and yet the quickest of B is quicker than the slowest of A";
+  EXPECT_TRUE(anyWorse(slower(1.3), 0.05));
+  EXPECT_FALSE(anyWorse(slower(1.3), 0.35));
+}
+
+TEST(Compare, AHitchInMostRunsIsNotWorseWhereTheOtherHadOneToo) {
+  BenchReport a = someReport(), b = someReport();
+  for (const int hitches : {0, 0, 1}) {
+    a.runs.push_back(a.measures);
+    a.runs.back().hitches = hitches;
+    b.runs.push_back(b.measures);
+    b.runs.back().hitches = 1 - hitches;
+  }
+  a.measures.hitches = 0;
+  b.measures.hitches = 1;
   EXPECT_FALSE(anyWorse(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05));
-  b.measures.p50Ms *= 1.15;
+  for (BenchMeasures& run : b.runs) run.hitches = 2;
+  b.measures.hitches = 2;
   EXPECT_TRUE(anyWorse(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05));
+}
+
+/// Reports of flights that differ by chance alone, as on a machine where frame times stray by `stray`.
+TEST(Compare, TwoRunsOfTheSameBuildAreEqualWhateverTheNoise) {
+  std::mt19937 random(11);
+  for (const double stray : {0.01, 0.1, 0.5}) {
+    std::normal_distribution<double> factor(0.0, stray);
+    int worse = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+      BenchReport reports[2] = {someReport(), someReport()};
+      for (BenchReport& report : reports) {
+        report.pictures.clear();
+        const BenchMeasures each = report.measures;
+        for (int run = 0; run < 3; ++run) {
+          const double slow = std::exp(factor(random));
+          report.runs.push_back(each);
+          for (double BenchMeasures::*time : {&BenchMeasures::p50Ms, &BenchMeasures::p95Ms, &BenchMeasures::p99Ms})
+            report.runs.back().*time *= slow;
+          report.runs.back().pointsPerSecond /= slow;
+        }
+        report.measures = medianMeasures(report.runs);
+      }
+      worse += anyWorse(compareReports("A", reportJson(reports[0]), "B", reportJson(reports[1])), 0.05) ? 1 : 0;
+    }
+    EXPECT_LE(worse, 2) << stray;  // 1 of 20 by Mann and Whitney 1947 for three against three: fewer for the noise
+  }
+}
+
+TEST(Compare, SaysThatOthersKeptTheMachineBusy) {
+  BenchReport a = someReport(), b = someReport();
+  EXPECT_EQ(comparisonTable(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05).find("other programs"),
+            std::string::npos);
+  b.measures.cpuOfOthers = 0.43;
+  EXPECT_NE(comparisonTable(compareReports("A", reportJson(a), "B", reportJson(b)), 0.05)
+                .find("other programs took 0 % of the machine's CPU time in A and 43 % in B"),
+            std::string::npos);
 }
 
 TEST(Compare, PutsEachPairOfPicturesSideBySideWithItsPsnr) {

@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "viewer/bench/html_text.h"
+#include "viewer/bench/jump_watch.h"
 #include "viewer/bench/page_cache.h"
 #include "viewer/bench/path_player.h"
 #include "viewer/bench/stills.h"
@@ -70,17 +71,49 @@ Facts storeFacts(const Store& store) {
           {"made by", info.program}};
 }
 
+std::string occlusionName(const OcclusionOptions& occlusion) {
+  if (!occlusion.enabled) return "off";
+  return occlusion == OcclusionOptions::exact() ? "exact" : "on";
+}
+
+template <class Numbers>
+std::string numbersText(const Numbers& numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    char one[32];
+    std::snprintf(one, sizeof one, "%s%.9g", text.empty() ? "" : " ", number);
+    text += one;
+  }
+  return text;
+}
+
+template <class Shapes>
+std::string shapesText(const Shapes& shapes) {
+  std::string text;
+  for (const auto& shape : shapes) text += (text.empty() ? "" : "; ") + numbersText(shape);
+  return text.empty() ? "none" : text;
+}
+
 Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::string& pageCache) {
   char density[32];
   std::snprintf(density, sizeof density, "%g", o.streamer.selection.pointsPerPixel);
+  const auto orElse = [](const std::string& text, const char* otherwise) { return text.empty() ? otherwise : text; };
   return {
       {"path", o.path.empty() ? "none" : std::filesystem::path(o.path).filename().string()},
+      {"path hash", o.path.empty() ? "none" : textHash(readText(o.path))},
       {"size", std::to_string(o.size.width) + "x" + std::to_string(o.size.height)},
       {"point budget", readableCount(static_cast<double>(o.streamer.selection.pointBudget))},
       {"progressive", o.progressive.millions > 0.0 ? readableCount(1e6 * o.progressive.millions) + " a frame" : "no"},
       {"points a pixel", density},
       {"point size", std::to_string(draw.pointSize)},
       {"colour", colourName(draw.colour)},
+      {"values shown", orElse(numbersText(o.draw.range), "all")},
+      {"classes", orElse(o.draw.classes, "all")},
+      {"clip boxes", shapesText(o.draw.clipBoxes)},
+      {"clip planes", shapesText(o.draw.clipPlanes)},
+      {"background", orElse(o.draw.background, "as it is")},
+      {"holes filled", o.draw.fill},
+      {"occlusion", occlusionName(o.streamer.selection.occlusion)},
       {"shading", draw.shading == Shading::highQuality ? "high quality" : "plain"},
       {"eye-dome lighting", draw.edl ? "yes" : "no"},
       {"loader threads", std::to_string(o.streamer.loaderThreads)},
@@ -147,7 +180,11 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
     streaming.trace = flight.trace.get();
   }
   Streamer streamer(store, streaming);
+  const CpuTime cpuBefore = cpuTime();
+  const auto began = std::chrono::steady_clock::now();
   flight.played = playPath(path, play, streamer, rasterizer);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  const double others = cpuOfOthers(cpuBefore, cpuTime(), seconds);
   if (!flight.played.reachedFullDetail) logWarning("the first view did not reach full detail in time");
   const StreamerStats stats = streamer.stats();
   flight.measures = measureFrames(flight.played.frames);
@@ -157,6 +194,7 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
   flight.measures.lodMs = stats.lodMsMean;
   flight.measures.cacheHitRate = stats.hitRate();
   flight.measures.peakRssBytes = peakRssBytes();
+  flight.measures.cpuOfOthers = others;
   double pixels = 0.0;
   for (const FrameRecord& frame : flight.played.frames) pixels += static_cast<double>(frame.pixelsCovered);
   if (pixels > 0.0) flight.measures.pointsReadPerPixel = static_cast<double>(stats.pointsLoaded) / pixels;
@@ -203,6 +241,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
   const CameraPath path = readCameraPath(options.path);
   const double nearPlane = std::min(kNear, kNearShare * store->info().bounds.diagonal());
   std::vector<Flight> flights;
+  std::vector<std::vector<JumpRecord>> jumps;
   for (int run = 0; run < options.repeat; ++run) {
     PlayOptions play{options.size, draw, options.settle, 0, options.output, {}, nearPlane};
     if (run == 0) {
@@ -214,6 +253,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
     if (options.cold && run > 0) dropPages(*store);
     flights.push_back(flyOnce(options, path, store, rasterizer, play));
     report.runs.push_back(flights.back().measures);
+    jumps.push_back(flights.back().played.jumps);
     if (options.repeat > 1)
       logInfo("run " + std::to_string(run + 1) + " of " + std::to_string(options.repeat) + ": median frame " +
               readableMs(flights.back().measures.p50Ms));
@@ -222,7 +262,7 @@ void flyPath(const BenchOptions& options, const std::shared_ptr<const Store>& st
   Flight& typical = flights[typicalRun(report.runs)];
   report.pictures = std::move(flights.front().played.pictures);
   report.frames = std::move(typical.played.frames);
-  report.jumps = std::move(typical.played.jumps);
+  report.jumps = medianJumps(jumps);
   report.counters = std::move(typical.counters);
   if (typical.trace != nullptr) writeText(options.output + "/trace.json", traceJson(*typical.trace, report.program));
   report.stages = {stage("taking the render list", report.frames, &FrameRecord::listMs, true),

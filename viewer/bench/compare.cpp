@@ -59,11 +59,31 @@ double noiseOf(const Json& a, const Json& b, const std::string& name) {
   return noise;
 }
 
-bool isWorse(const MeasureChange& c, double failAbove) { return c.worseBy > failAbove && c.worseBy > c.noise; }
+/// Whether the values of the repetitions of a and b do not overlap. One flight is one value.
+bool areApart(const Json& a, const Json& b, const MeasureField& measure) {
+  double least[2], most[2];
+  const Json* reports[2] = {&a, &b};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Json& report = *reports[i];
+    least[i] = most[i] = report["measures"][Json::json_pointer(measure.pointer)].get<double>();
+    if (!report.contains("runs") || !report["runs"].is_array()) continue;
+    for (const Json& run : report["runs"])
+      if (const Json::json_pointer where(measure.pointer); run.contains(where) && run[where].is_number()) {
+        least[i] = std::min(least[i], run[where].get<double>());
+        most[i] = std::max(most[i], run[where].get<double>());
+      }
+  }
+  return most[0] < least[1] || most[1] < least[0];
+}
+
+bool isWorse(const MeasureChange& c, double failAbove) {
+  return c.worseBy > failAbove && c.worseBy > c.noise && c.apart;
+}
 
 std::string verdictOf(const MeasureChange& c, double failAbove) {
   if (isWorse(c, failAbove)) return "worse";
-  if (c.noise >= 0.0 && std::abs(c.ratio - 1.0) <= c.noise) return "within noise";
+  if (c.a == c.b) return "equal";
+  if (c.noise >= 0.0 && (std::abs(c.ratio - 1.0) <= c.noise || !c.apart)) return "within noise";
   return "";
 }
 
@@ -94,13 +114,44 @@ std::string psnrText(double db) {
 
 /// The members of two objects that differ, one line each.
 void addDifferences(const Json& a, const Json& b, const std::string& object, const char* ignored,
-                    std::vector<std::string>& out) {
+                    const std::string& prefix, std::vector<std::string>& out) {
   const Json empty = Json::object();
   const Json& left = a.contains(object) && a[object].is_object() ? a[object] : empty;
   const Json& right = b.contains(object) && b[object].is_object() ? b[object] : empty;
   for (const auto& [name, value] : left.items())
     if (name != ignored && right.contains(name) && right[name] != value)
-      out.push_back(name + ": " + textOf(value) + " / " + textOf(right[name]));
+      out.push_back(prefix + name + ": " + textOf(value) + " / " + textOf(right[name]));
+}
+
+std::vector<std::string> warningsOf(const Json& a, const Json& b, const Comparison& comparison) {
+  std::vector<std::string> warnings;
+  constexpr double kBusy = 0.1;
+  const Json::json_pointer others("/measures/cpu_of_others");
+  const auto busy = [&](const Json& report) {
+    return report.contains(others) && report[others].is_number() ? report[others].get<double>() : 0.0;
+  };
+  if (std::max(busy(a), busy(b)) > kBusy) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "other programs took %.0f %% of the machine's CPU time in A and %.0f %% in B: times mean little",
+                  100.0 * busy(a), 100.0 * busy(b));
+    warnings.push_back(text);
+  }
+  if (std::all_of(comparison.changes.begin(), comparison.changes.end(),
+                  [](const MeasureChange& c) { return c.noise < 0.0; }))
+    warnings.push_back("the noise is not known: fly with --repeat 3");
+  return warnings;
+}
+
+std::string verdict(const Comparison& comparison, double failAbove) {
+  if (!std::isfinite(failAbove)) return {};
+  std::string worse;
+  for (const MeasureChange& c : comparison.changes)
+    if (isWorse(c, failAbove)) worse += (worse.empty() ? "" : ", ") + c.name;
+  char limit[32];
+  std::snprintf(limit, sizeof limit, "%g", 100.0 * failAbove);
+  return worse.empty() ? std::string("B is in nothing worse by more than ") + limit + " % and its noise"
+                       : std::string("B is worse by more than ") + limit + " % and its noise: " + worse;
 }
 
 }  // namespace
@@ -115,13 +166,19 @@ Comparison compareReports(const std::string& fileA, const std::string& jsonA, co
     if (&measure != measureFields().data() && !(has(a, measure) && has(b, measure))) continue;
     comparison.changes.push_back(change(measure, numberAt(fileA, a, measure), numberAt(fileB, b, measure)));
     comparison.changes.back().noise = noiseOf(a, b, measure.name);
+    comparison.changes.back().apart = areApart(a, b, measure);
   }
+  for (const char* name : {"program", "commit"})
+    if (a.contains(name) && b.contains(name) && a[name] != b[name])
+      comparison.differences.push_back(std::string(name) + ": " + textOf(a[name]) + " / " + textOf(b[name]));
   for (const char* name : {"backend", "device", "frames"})
     if (a["measures"].contains(name) && b["measures"].contains(name) && a["measures"][name] != b["measures"][name])
       comparison.differences.push_back(std::string(name) + ": " + textOf(a["measures"][name]) + " / " +
                                        textOf(b["measures"][name]));
-  addDifferences(a, b, "options", "output", comparison.differences);
-  addDifferences(a, b, "machine", "", comparison.differences);
+  addDifferences(a, b, "store", "path", "store's ", comparison.differences);
+  addDifferences(a, b, "options", "", "", comparison.differences);
+  addDifferences(a, b, "machine", "", "", comparison.differences);
+  comparison.warnings = warningsOf(a, b, comparison);
   return comparison;
 }
 
@@ -131,10 +188,17 @@ Comparison compareRuns(const std::string& a, const std::string& b) {
   const std::string jsonA = readText(fileA);
   const std::string jsonB = readText(fileB);
   Comparison comparison = compareReports(fileA, jsonA, fileB, jsonB);
-  const std::vector<std::string> inB = picturesOf(Json::parse(jsonB));
-  for (const std::string& file : picturesOf(Json::parse(jsonA)))
-    if (std::find(inB.begin(), inB.end(), file) != inB.end())
+  const std::vector<std::string> inA = picturesOf(Json::parse(jsonA)), inB = picturesOf(Json::parse(jsonB));
+  const auto in = [](const std::vector<std::string>& files, const std::string& file) {
+    return std::find(files.begin(), files.end(), file) != files.end();
+  };
+  for (const std::string& file : inA)
+    if (in(inB, file))
       comparison.pictures.push_back({file, psnr(readPng(besideReport(a, file)), readPng(besideReport(b, file)))});
+    else
+      comparison.differences.push_back("pictures: " + file + " is in A alone");
+  for (const std::string& file : inB)
+    if (!in(inA, file)) comparison.differences.push_back("pictures: " + file + " is in B alone");
   return comparison;
 }
 
@@ -154,10 +218,9 @@ std::string comparisonTable(const Comparison& comparison, double failAbove) {
   }
   for (const PictureChange& p : comparison.pictures) table += p.file + ": " + psnrText(p.psnr) + "\n";
   for (const std::string& difference : comparison.differences) table += "the runs differ in " + difference + "\n";
-  if (std::all_of(comparison.changes.begin(), comparison.changes.end(),
-                  [](const MeasureChange& c) { return c.noise < 0.0; }))
-    table += "the noise is not known: fly with --repeat 3\n";
-  return table;
+  for (const std::string& warning : comparison.warnings) table += warning + "\n";
+  const std::string end = verdict(comparison, failAbove);
+  return end.empty() ? table : table + end + "\n";
 }
 
 bool anyWorse(const Comparison& comparison, double failAbove) {
@@ -198,14 +261,16 @@ std::string comparisonHtml(const std::string& a, const std::string& b, const Com
     html += "<tr><td>" + c.name + "</td>" + cells + (verdict == "worse" ? "<td class=\"worse\">" : "<td>") + verdict +
             "</td></tr>\n";
   }
-  html += "</table>";
+  html += "</table><p>" + htmlEscape(verdict(comparison, failAbove)) + "</p>";
+  for (const std::string& warning : comparison.warnings) html += "<p>" + htmlEscape(warning) + ".</p>";
   for (const std::string& difference : comparison.differences)
     html += "<p>The runs differ in " + htmlEscape(difference) + ".</p>";
   for (const PictureChange& picture : comparison.pictures) {
     html += "<h2>" + htmlEscape(picture.file) + ": " + psnrText(picture.psnr) + "</h2><div class=\"pair\">";
-    for (const std::string& run : {a, b})
+    for (const auto& [run, label] : {std::pair{a, "A"}, std::pair{b, "B"}})
       html += "<figure><img alt=\"" + htmlEscape(picture.file) + "\" src=\"data:image/png;base64," +
-              base64(encodePng(readPng(besideReport(run, picture.file)))) + "\"></figure>";
+              base64(encodePng(readPng(besideReport(run, picture.file)))) + "\"><figcaption>" + label +
+              "</figcaption></figure>";
     html += "</div>\n";
   }
   return html + "</body></html>\n";

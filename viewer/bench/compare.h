@@ -13,6 +13,7 @@ struct MeasureChange {
   double ratio = 1.0;
   double worseBy = 0.0;  ///< share by which b is worse than a, 0.05 = 5 %; negative = better; 0 where neither is better
   double noise = -1.0;   ///< share by which the measure strays over the repetitions of a and b; -1 = not known
+  bool apart = true;     ///< no repetition of one lies among those of the other
 };
 
 struct PictureChange {
@@ -25,6 +26,7 @@ struct Comparison {
   std::vector<MeasureChange> changes;
   std::vector<std::string> differences;  ///< "backend: cpu / points": what makes the runs unlike
   std::vector<PictureChange> pictures;   ///< of the files that both reports name
+  std::vector<std::string> warnings;     ///< what keeps the runs from being compared well
 };
 
 /// Compares two report.json texts, but for the pictures. Throws Error naming `fileA` or `fileB` when one is no report.
@@ -34,7 +36,8 @@ Comparison compareReports(const std::string& fileA, const std::string& jsonA, co
 /// Compares what two runs left in their folders (or report.json files), pictures included.
 Comparison compareRuns(const std::string& a, const std::string& b);
 
-/// `failAbove` is a share; what is worse by more, and by more than its noise, is called worse.
+/// `failAbove` is a share. Worse is what is worse by more than that and by more than its noise, and in each repetition
+/// of b worse than in any of a.
 std::string comparisonTable(const Comparison& comparison, double failAbove);
 bool anyWorse(const Comparison& comparison, double failAbove);
 

@@ -15,4 +15,12 @@ struct Machine {
 
 Machine thisMachine();
 
+/// CPU time used since the machine and the process began, seconds over all cores; zeros where the system does not say.
+struct CpuTime {
+  double machine = 0.0, own = 0.0;
+};
+CpuTime cpuTime();
+/// The share of the machine's CPU time that other programs took between two moments `seconds` apart, 0 to 1.
+double cpuOfOthers(const CpuTime& from, const CpuTime& to, double seconds);
+
 }  // namespace strata

@@ -96,7 +96,8 @@ constexpr MeasureField kFields[] = {
     field<&M::pointsPerPixelWon>("points_per_pixel_won", "/points_per_pixel_won", Better::neither),
     field<&M::pointsReadPerPixel>("points_read_per_pixel", "/points_read_per_pixel", Better::neither),
     field<&M::peakRssBytes>("peak_rss_bytes", "/peak_rss_bytes", Better::neither),
-    field<&M::gpuPeakBytes>("gpu_peak_bytes", "/gpu_peak_bytes", Better::neither)};
+    field<&M::gpuPeakBytes>("gpu_peak_bytes", "/gpu_peak_bytes", Better::neither),
+    field<&M::cpuOfOthers>("cpu_of_others", "/cpu_of_others", Better::neither)};
 
 std::vector<double> valuesOf(std::span<const BenchMeasures> runs, const MeasureField& f) {
   std::vector<double> values;

@@ -22,6 +22,7 @@ struct FrameRecord {
   std::uint64_t pointsListed = 0;   ///< in the render list, before culling
   std::uint32_t nodes = 0;          ///< in the render list
   std::uint32_t missingNodes = 0;   ///< wanted, not there yet
+  double detail = 1.0;              ///< share of the wanted nodes drawn as finely as wanted; see jump_watch.h
   std::uint64_t bytesRead = 0;      ///< from the store since it was opened
   std::uint64_t bytesUploaded = 0;  ///< in this frame
   std::uint64_t queueLength = 0;    ///< nodes waiting to be read
@@ -30,17 +31,11 @@ struct FrameRecord {
   std::uint64_t pixelsCovered = 0;  ///< that show a point
   double widestSpacingPx = 0.0;     ///< see screen_spacing.h
   bool hitch = false;
-
-  /// Share of the wanted nodes that are drawn, 0 to 1.
-  double detail() const {
-    const double wanted = static_cast<double>(nodes) + missingNodes;
-    return wanted > 0.0 ? nodes / wanted : 1.0;
-  }
 };
 
 /// How fast the picture fills after the camera was put somewhere new: at the start and at each cut of the path.
-/// Milliseconds from then until the first finished frame with that share of the wanted nodes; -1: not before the next
-/// jump or the end.
+/// Milliseconds from then until the first finished frame with that share of the wanted nodes, drawn as finely as
+/// wanted (at the start: until the list of such a frame); -1: not before the next jump or the end.
 struct JumpRecord {
   static constexpr double kShares[3] = {0.80, 0.95, 1.00};
 
@@ -67,6 +62,7 @@ struct BenchMeasures {
   double spacingP50 = 0.0, spacingP95 = 0.0;  ///< of FrameRecord::widestSpacingPx
   std::uint64_t peakRssBytes = 0;             ///< of the process, since it began
   std::uint64_t gpuPeakBytes = 0;             ///< of node data
+  double cpuOfOthers = 0.0;                   ///< share of the machine's CPU time that other programs took, 0 to 1
   std::string backend;
   std::string device;
 };

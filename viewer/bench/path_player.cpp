@@ -6,11 +6,11 @@
 #include <cstdio>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <thread>
 #include <utility>
 
 #include "lod/hierarchy_index.h"
+#include "viewer/bench/jump_watch.h"
 #include "viewer/bench/screen_spacing.h"
 #include "viewer/bench/video.h"
 
@@ -72,30 +72,6 @@ class PictureShelf {
   const std::vector<int> marked_;
   int shownEvery_ = 1;
   std::vector<ReportPicture> waiting_, done_;
-};
-
-/// Watches how the picture fills after each jump of the camera.
-class JumpWatch {
- public:
-  void begin(double t) {
-    jumps_.push_back({t});
-    began_ = Clock::now();
-  }
-  /// `list` is what was drawn last; `since` are the views since the jump.
-  void see(const RenderList& list, std::span<const View> since) {
-    if (jumps_.empty() || jumps_.back().reachedMs[2] >= 0.0) return;
-    if (std::find(since.rbegin(), since.rend(), list.view) == since.rend()) return;  // chosen before the jump
-    const double wanted = static_cast<double>(list.items.size()) + list.missingNodes;
-    const double detail = wanted > 0.0 ? static_cast<double>(list.items.size()) / wanted : 1.0;
-    const double ms = msSince(began_);
-    for (std::size_t i = 0; i < std::size(JumpRecord::kShares); ++i)
-      if (double& reached = jumps_.back().reachedMs[i]; reached < 0.0 && detail >= JumpRecord::kShares[i]) reached = ms;
-  }
-  std::vector<JumpRecord> take() { return std::move(jumps_); }
-
- private:
-  std::vector<JumpRecord> jumps_;
-  Clock::time_point began_;
 };
 
 std::uint64_t coveredPixels(const Frame& frame) {
@@ -170,34 +146,31 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
   };
   PlayedPath played;
   JumpWatch jumps;
-  const std::vector<View> firstView{view(0)};
+  const View firstView = view(0);
   const Clock::time_point opened = Clock::now();
   TraceScope span(options.lane, "first view");
-  jumps.begin(0.0);
-  streamer.setView(firstView.front());
+  jumps.begin(0.0, 0.0);
+  jumps.look(firstView);
+  streamer.setView(firstView);
   while (!played.reachedFullDetail && Clock::now() - opened < kLongestWait) {
     played.reachedFullDetail = streamer.waitUntilComplete(kDetailStep);
-    jumps.see(streamer.beginFrame(), firstView);
+    jumps.see(streamer.beginFrame(), msSince(opened));
   }
   played.timeToFullDetailMs = msSince(opened);
-  Frame frame = drawComplete(firstView.front(), options.draw, streamer, rasterizer);
+  Frame frame = drawComplete(firstView, options.draw, streamer, rasterizer);
 
   PictureShelf shelf(options, path);
   std::optional<VideoWriter> video;
   if (!options.video.empty()) video.emplace(options.video, options.size.width, options.size.height, path.fps);
   const std::vector<int> cuts = cutFrames(path);
   const int aheadFrames = static_cast<int>(std::lround(kAheadSeconds * path.fps));
-  std::vector<View> sinceJump;
   played.frames.reserve(static_cast<std::size_t>(frames));
   Clock::time_point due = Clock::now();
   for (int index = 0; index < frames; ++index) {
     const View now = view(index);
     span.next("place the camera");
-    if (std::binary_search(cuts.begin(), cuts.end(), index)) {
-      jumps.begin(index / path.fps);
-      sinceJump.clear();
-    }
-    sinceJump.push_back(now);
+    if (std::binary_search(cuts.begin(), cuts.end(), index)) jumps.begin(index / path.fps, msSince(opened));
+    jumps.look(now);
     streamer.setView(now, view(std::min(index + aheadFrames, frames - 1)));
     double settleMs = 0.0;
     if (options.settle) {
@@ -209,7 +182,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
     const RenderList* list = nullptr;
     span.next("draw and measure");
     FrameRecord record = drawFrame(now, options, index, streamer, rasterizer, frame, list);
-    jumps.see(*list, sinceJump);
+    record.detail = jumps.see(*list, msSince(opened));
     const StreamerStats stats = streamer.stats();
     record.index = index;
     record.t = index / path.fps;

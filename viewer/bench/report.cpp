@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kReportSchema = 3;  // docs/benchmarks.md, "report.json"
+constexpr int kReportSchema = 4;  // docs/flights.md, "report.json"
 
 Json facts(const std::vector<std::pair<std::string, std::string>>& pairs) {
   Json json = Json::object();
@@ -27,6 +27,8 @@ std::string hashText(std::uint64_t hash) {
 }
 
 }  // namespace
+
+std::string textHash(const std::string& text) { return hashText(checksum(std::as_bytes(std::span(text)))); }
 
 std::string imageHash(const Image& image) {
   const std::int32_t size[2] = {image.width, image.height};
@@ -79,19 +81,20 @@ std::string reportJson(const BenchReport& report) {
 std::string framesCsv(const std::vector<FrameRecord>& frames) {
   std::string csv =
       "frame,t,frame_ms,list_ms,upload_ms,draw_ms,resolve_ms,settle_ms,lod_ms,points_drawn,points_listed,nodes,"
-      "missing_nodes,bytes_read,bytes_uploaded,queue_length,resident_bytes,gpu_bytes,pixels_covered,hitch,gpu_ms,"
+      "missing_nodes,detail,bytes_read,bytes_uploaded,queue_length,resident_bytes,gpu_bytes,pixels_covered,hitch,gpu_"
+      "ms,"
       "widest_spacing_px\n";
   char line[480];
   for (const FrameRecord& f : frames) {
     std::snprintf(
         line, sizeof line,
-        "%d,%.6f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.4f,%llu,%llu,%u,%u,%llu,%llu,%llu,%llu,%llu,%llu,%d,%.4f,%.3f\n",
+        "%d,%.6f,%.4f,%.4f,%.4f,%.4f,%.4f,%.3f,%.4f,%llu,%llu,%u,%u,%.4f,%llu,%llu,%llu,%llu,%llu,%llu,%d,%.4f,%.3f\n",
         f.index, f.t, f.frameMs, f.listMs, f.uploadMs, f.drawMs, f.resolveMs, f.settleMs, f.lodMs,
         static_cast<unsigned long long>(f.pointsDrawn), static_cast<unsigned long long>(f.pointsListed), f.nodes,
-        f.missingNodes, static_cast<unsigned long long>(f.bytesRead), static_cast<unsigned long long>(f.bytesUploaded),
-        static_cast<unsigned long long>(f.queueLength), static_cast<unsigned long long>(f.residentBytes),
-        static_cast<unsigned long long>(f.gpuBytes), static_cast<unsigned long long>(f.pixelsCovered), f.hitch ? 1 : 0,
-        f.gpuMs, f.widestSpacingPx);
+        f.missingNodes, f.detail, static_cast<unsigned long long>(f.bytesRead),
+        static_cast<unsigned long long>(f.bytesUploaded), static_cast<unsigned long long>(f.queueLength),
+        static_cast<unsigned long long>(f.residentBytes), static_cast<unsigned long long>(f.gpuBytes),
+        static_cast<unsigned long long>(f.pixelsCovered), f.hitch ? 1 : 0, f.gpuMs, f.widestSpacingPx);
     csv += line;
   }
   return csv;

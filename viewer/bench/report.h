@@ -40,11 +40,13 @@ struct BenchReport {
   std::vector<StageTime> stages;
   std::vector<std::pair<std::string, double>> counters;  ///< of the streamer, by name
   std::vector<FrameRecord> frames;                       ///< of the run whose median frame time is the median one
-  std::vector<JumpRecord> jumps;                         ///< of the same run
+  std::vector<JumpRecord> jumps;                         ///< medians over the runs
   std::vector<BenchMeasures> runs;                       ///< each repetition by itself, in order
   std::vector<ReportPicture> pictures;
 };
 
+/// XXH3-64, 16 hexadecimal digits.
+std::string textHash(const std::string& text);
 /// XXH3-64 of size and pixels, 16 hexadecimal digits: equal pictures have equal hashes.
 std::string imageHash(const Image& image);
 /// Of the hierarchy, which holds a checksum of every payload: equal stores have equal hashes.

@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
 
 #include "viewer/bench/html_plot.h"
 #include "viewer/bench/html_text.h"
@@ -128,6 +131,7 @@ std::string keyFigures(const BenchMeasures& m) {
   add(readableCount(m.pointsPerPixelWon), "points drawn for a pixel won");
   add(readableBytes(static_cast<double>(m.peakRssBytes)), "memory, peak");
   add(readableCount(m.spacingP95) + " px", "between points where widest, 95th percentile");
+  add(readableCount(100.0 * m.cpuOfOthers) + " %", "of the machine's CPU time taken by other programs");
   return html + "</div>\n";
 }
 
@@ -178,14 +182,15 @@ std::string plotsHtml(const BenchReport& report) {
   Plot points{"Points over the path", "Drawn: sent through projection after culling.", t, {}, {}, readableCount};
   points.lines.push_back(line("in the render list", "b", false, [](const FrameRecord& f) { return f.pointsListed; }));
   points.lines.push_back(line("drawn", "a", true, [](const FrameRecord& f) { return f.pointsDrawn; }));
-  Plot detail{"Detail over the path",
-              "Share of the nodes that the view wants and that are drawn; for the rest a coarser parent stands in.",
-              t,
-              {},
-              cutsOf(report),
-              readablePercent};
+  Plot detail{
+      "Detail over the path",
+      "Share of the nodes that the view wants and that are drawn as finely; for the rest something coarser stands in.",
+      t,
+      {},
+      cutsOf(report),
+      readablePercent};
   detail.top = 100.0;
-  detail.lines.push_back(line("detail", "b", true, [](const FrameRecord& f) { return 100.0 * f.detail(); }));
+  detail.lines.push_back(line("detail", "b", true, [](const FrameRecord& f) { return 100.0 * f.detail; }));
   Plot spacing{"Widest distance between points",
                "In pixels, where more points of the store would narrow it and nothing hides it.",
                t,
@@ -214,6 +219,32 @@ std::string jumpsHtml(const std::vector<JumpRecord>& jumps) {
   if (rows.empty()) return rows;
   return "<h2>Until the picture is whole</h2>\n<table><tr><th>after</th><th class=\"n\">80 %</th><th "
          "class=\"n\">95 %</th><th class=\"n\">100 % of the nodes</th></tr>" +
+         rows + "</table>\n";
+}
+
+/// Each measure's median over the repetitions, and how far it strays; nothing where there was one run.
+std::string repetitionsHtml(const BenchReport& report) {
+  const std::vector<MeasureNoise> noise = measureNoise(report.runs);
+  if (noise.empty()) return {};
+  std::string rows;
+  for (std::size_t i = 0; i < noise.size(); ++i) {
+    const MeasureField& field = measureFields()[i];
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const BenchMeasures& run : report.runs) {
+      least = std::min(least, field.get(run));
+      most = std::max(most, field.get(run));
+    }
+    rows += "<tr><td>" + htmlEscape(noise[i].name) + "</td>";
+    for (const double value : {field.get(report.measures), least, most}) {
+      char number[32];
+      std::snprintf(number, sizeof number, "%.4g", value);
+      rows += std::string("<td class=\"n\">") + (std::abs(value) >= 1e4 ? readableCount(value) : number) + "</td>";
+    }
+    rows += "<td class=\"n\">" + readableCount(100.0 * noise[i].share) + " %</td></tr>";
+  }
+  return "<h2>" + std::to_string(report.runs.size()) +
+         " flights</h2>\n<table><tr><th>measure</th><th class=\"n\">median</th><th class=\"n\">least</th><th "
+         "class=\"n\">most</th><th class=\"n\">spread</th></tr>" +
          rows + "</table>\n";
 }
 
@@ -250,14 +281,14 @@ std::string reportHtml(const BenchReport& report) {
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\"><title>" +
       htmlEscape(report.storeName) + " – Strata</title><style>" + kStyle + "</style></head><body><main>\n<header><h1>" +
-      htmlEscape(report.storeName) + "</h1><p class=\"soft\">" + htmlEscape(report.program) + ", " +
-      htmlEscape(report.when) + ". " + htmlEscape(report.measures.backend) + " on " +
-      htmlEscape(report.measures.device) + ".</p></header>\n";
+      htmlEscape(report.storeName) + "</h1><p class=\"soft\">" + htmlEscape(report.program) + " (" +
+      htmlEscape(report.commit) + "), " + htmlEscape(report.when) + ". " + htmlEscape(report.measures.backend) +
+      " on " + htmlEscape(report.measures.device) + ".</p></header>\n";
   html += stillsHtml(report.pictures);
   if (report.measures.frames > 0)
     html += keyFigures(report.measures) + "<h2>Along the path</h2>\n" + plotsHtml(report) +
             flightPicturesHtml(report.pictures) + jumpsHtml(report.jumps) + "<h2>Where a frame's time goes</h2>\n" +
-            stagesHtml(report.stages);
+            stagesHtml(report.stages) + repetitionsHtml(report);
   const Machine& machine = report.machine;
   std::vector<std::pair<std::string, std::string>> machineFacts{
       {"processor", machine.cpu},
@@ -265,7 +296,9 @@ std::string reportHtml(const BenchReport& report) {
       {"memory", readableBytes(static_cast<double>(machine.memory))},
       {"system", machine.system},
       {"rasterizer", report.measures.backend + ", " + report.measures.device}};
-  html += "<div class=\"two\">" + factsHtml("The store", report.store) + factsHtml("The machine", machineFacts) +
+  std::vector<std::pair<std::string, std::string>> storeFacts = report.store;
+  storeFacts.emplace_back("hash", report.storeHash);
+  html += "<div class=\"two\">" + factsHtml("The store", storeFacts) + factsHtml("The machine", machineFacts) +
           factsHtml("This run", report.options);
   std::vector<std::pair<std::string, std::string>> counters;
   for (const auto& [name, value] : report.counters) counters.emplace_back(name, readableCount(value));
