@@ -82,28 +82,43 @@ void appendComponent(const ComponentSource& source, std::span<const std::uint32_
 }
 
 template <class T>
-bool takeComponent(std::span<const std::byte>& stored, std::vector<std::uint8_t>& spare, std::span<T> out) {
+bool ComponentDecoder<T>::open(std::span<const std::byte>& stored, std::size_t count,
+                               std::vector<std::uint8_t>& spare) {
   if (stored.empty() || static_cast<unsigned>(stored[0]) > kDifferences) return false;
-  const auto transform = static_cast<Transform>(stored[0]);
+  differences_ = static_cast<Transform>(stored[0]) == kDifferences;
+  before_ = 0;
   stored = stored.subspan(1);
-  const std::size_t count = out.size();
   spare.resize(count * sizeof(T));
-  for (std::size_t b = 0; b < sizeof(T); ++b)
+  for (std::size_t b = 0; b < sizeof(T); ++b) {
+    column_[b] = spare.data() + b * count;
     if (!takeColumn(stored, std::span(spare).subspan(b * count, count))) return false;
-  T before = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    T value = 0;
-    for (std::size_t b = 0; b < sizeof(T); ++b)
-      value = static_cast<T>(value | static_cast<T>(static_cast<T>(spare[b * count + i]) << (8 * b)));
-    if (transform == kDifferences) value = before = static_cast<T>(before + unfolded(value));
-    out[i] = value;
   }
   return true;
 }
 
-template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint8_t>);
-template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint16_t>);
-template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint32_t>);
-template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint64_t>);
+template <class T>
+void ComponentDecoder<T>::read(std::span<T> out) {
+  if constexpr (sizeof(T) == 1) {
+    std::copy_n(column_[0], out.size(), out.data());
+  } else {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      T value = 0;
+      for (std::size_t b = 0; b < sizeof(T); ++b)
+        value = static_cast<T>(value | static_cast<T>(static_cast<T>(column_[b][i]) << (8 * b)));
+      out[i] = value;
+    }
+  }
+  for (const std::uint8_t*& column : column_) column += out.size();
+  if (!differences_) return;
+  for (T& value : out) value = unfolded(value);
+  T before = before_;
+  for (T& value : out) value = before = static_cast<T>(before + value);
+  before_ = before;
+}
+
+template class ComponentDecoder<std::uint8_t>;
+template class ComponentDecoder<std::uint16_t>;
+template class ComponentDecoder<std::uint32_t>;
+template class ComponentDecoder<std::uint64_t>;
 
 }  // namespace strata

@@ -22,13 +22,25 @@ struct ComponentSource {
 void appendComponent(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t count,
                      std::vector<std::uint8_t>& spare, std::vector<std::byte>& out);
 
-/// Decodes one component into `out`, in stored order, and moves `stored` on. False when the bytes do not fit.
+/// Gives back one component in stored order. T: unsigned, of the component's width.
 template <class T>
-bool takeComponent(std::span<const std::byte>& stored, std::vector<std::uint8_t>& spare, std::span<T> out);
+class ComponentDecoder {
+ public:
+  /// Moves `stored` behind the component. False when the bytes do not fit. `spare` is working memory, which has to stay
+  /// as it is until all has been read.
+  bool open(std::span<const std::byte>& stored, std::size_t count, std::vector<std::uint8_t>& spare);
+  /// The next values.
+  void read(std::span<T> out);
 
-extern template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint8_t>);
-extern template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint16_t>);
-extern template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint32_t>);
-extern template bool takeComponent(std::span<const std::byte>&, std::vector<std::uint8_t>&, std::span<std::uint64_t>);
+ private:
+  const std::uint8_t* column_[sizeof(T)] = {};
+  bool differences_ = false;
+  T before_ = 0;
+};
+
+extern template class ComponentDecoder<std::uint8_t>;
+extern template class ComponentDecoder<std::uint16_t>;
+extern template class ComponentDecoder<std::uint32_t>;
+extern template class ComponentDecoder<std::uint64_t>;
 
 }  // namespace strata

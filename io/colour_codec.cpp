@@ -1,5 +1,7 @@
 #include "io/colour_codec.h"
 
+#include <cstring>
+
 #include "io/column_codec.h"
 
 namespace strata {
@@ -8,6 +10,20 @@ namespace {
 /// 257 * kInverse257 = 1 modulo 2^16.
 constexpr std::uint32_t kInverse257 = 65281;
 static_assert((257u * kInverse257 & 0xffffu) == 1);
+
+using Words __attribute__((vector_size(16))) = std::uint32_t;
+using Bytes __attribute__((vector_size(16))) = std::uint8_t;
+
+/// Byte by byte, modulo 256.
+Words addBytes(Words a, Words b) {
+  return reinterpret_cast<Words>(reinterpret_cast<Bytes>(a) + reinterpret_cast<Bytes>(b));
+}
+
+/// Of red - green, green and blue - green in the three lower bytes.
+Words coloursOf(Words differences) {
+  const Words green = differences >> 8 & 255u;
+  return addBytes(differences, green | green << 16) | 0xff000000u;
+}
 
 }  // namespace
 
@@ -31,22 +47,43 @@ void appendColours(std::span<const std::uint32_t> colours, std::vector<std::uint
   for (std::size_t c = 0; c < 3; ++c) appendColumn(std::span(spare).subspan(c * count, count), out);
 }
 
-bool decodeColours(std::span<const std::byte> stored, std::vector<std::uint8_t>& spare, std::span<std::uint32_t> out) {
-  const std::size_t count = out.size();
+bool ColourDecoder::open(std::span<const std::byte> stored, std::size_t count, std::vector<std::uint8_t>& spare) {
   spare.resize(3 * count);
   for (std::size_t c = 0; c < 3; ++c)
     if (!takeColumn(stored, std::span(spare).subspan(c * count, count))) return false;
-  const std::uint8_t* const green = spare.data();
-  const std::uint8_t* const red = green + count;
-  const std::uint8_t* const blue = red + count;
-  std::uint32_t g = 0, r = 0, b = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    g += green[i];
-    r += red[i];
-    b += blue[i];
-    out[i] = ((r + g) & 255u) | (g & 255u) << 8 | ((b + g) & 255u) << 16 | 0xff000000u;
-  }
+  green_ = spare.data();
+  red_ = green_ + count;
+  blue_ = red_ + count;
+  last_ = 0;
   return stored.empty();
+}
+
+void ColourDecoder::read(std::span<std::uint32_t> out) {
+  const std::size_t count = out.size();
+  for (std::size_t i = 0; i < count; ++i)
+    out[i] = static_cast<std::uint32_t>(red_[i]) | static_cast<std::uint32_t>(green_[i]) << 8 |
+             static_cast<std::uint32_t>(blue_[i]) << 16;
+  green_ += count;
+  red_ += count;
+  blue_ += count;
+  // Sums of differences, all three in each word, four words at a time.
+  Words last{last_, last_, last_, last_};
+  std::size_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    Words sums;
+    std::memcpy(&sums, &out[i], sizeof sums);
+    sums = addBytes(sums, __builtin_shufflevector(Words{}, sums, 0, 4, 5, 6));
+    sums = addBytes(sums, __builtin_shufflevector(Words{}, sums, 0, 1, 4, 5));
+    sums = addBytes(sums, last);
+    last = __builtin_shufflevector(sums, sums, 3, 3, 3, 3);
+    const Words colours = coloursOf(sums);
+    std::memcpy(&out[i], &colours, sizeof colours);
+  }
+  for (; i < count; ++i) {
+    last = addBytes(last, Words{out[i], 0, 0, 0});
+    out[i] = coloursOf(last)[0];
+  }
+  last_ = last[0];
 }
 
 std::uint16_t residualOf(ResidualUnit unit, std::uint16_t value, std::uint32_t colour, int shift) {

@@ -12,8 +12,20 @@ namespace strata {
 void appendColours(std::span<const std::uint32_t> colours, std::vector<std::uint8_t>& spare,
                    std::vector<std::byte>& out);
 
-/// Decodes with 255 in the highest byte. False when the bytes do not fit.
-bool decodeColours(std::span<const std::byte> stored, std::vector<std::uint8_t>& spare, std::span<std::uint32_t> out);
+/// Gives back the colours of a plane in stored order, with 255 in the highest byte.
+class ColourDecoder {
+ public:
+  /// False when the bytes do not fit. `spare` is working memory, which has to stay as it is until all has been read.
+  bool open(std::span<const std::byte> stored, std::size_t count, std::vector<std::uint8_t>& spare);
+  /// The next colours.
+  void read(std::span<std::uint32_t> out);
+
+ private:
+  const std::uint8_t* green_ = nullptr;
+  const std::uint8_t* red_ = nullptr;
+  const std::uint8_t* blue_ = nullptr;
+  std::uint32_t last_ = 0;  ///< green and what red and blue have less
+};
 
 /// How the residual plane counts: what 8 bits leave of a 16-bit value v whose drawn colour is c, modulo 2^16.
 /// The first two units hold what comes of 8-bit sources: (v - unit * c) / unit, which is 0 where v = unit * c.

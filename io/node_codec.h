@@ -52,13 +52,6 @@ EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info);
 /// How many leading bytes of the payload a drawing at `precision` has to fetch.
 std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
 
-/// Decodes the drawing planes out of the first drawBytes(record, precision) bytes of the payload; return numbers and
-/// normals too where more bytes are at hand and hold them.
-/// Trusts nothing: throws Error (`points.bin: node r042: block checksum mismatch`) for anything that does not fit.
-/// `out` is replaced; the memory it holds is used again. After an exception it holds nothing of use.
-void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
-                      Precision precision, NodeData& out);
-
 /// Where in the payload the planes that drawings look at end; 0 for those that the node does not have.
 struct PlaneEnds {
   std::uint32_t position[3] = {0, 0, 0};
@@ -66,12 +59,31 @@ struct PlaneEnds {
   std::uint32_t whole = 0;  ///< where the last plane ends that has been at hand from its beginning to its end
 };
 
+/// Working memory of decodeForDrawing, worth keeping from node to node. One thread at a time.
+class DecodeScratch {
+ public:
+  DecodeScratch();
+  ~DecodeScratch();
+  DecodeScratch(DecodeScratch&&) noexcept;
+  struct Buffers;
+  Buffers& buffers() { return *buffers_; }
+
+ private:
+  std::unique_ptr<Buffers> buffers_;
+};
+
 /// Decodes all planes for drawing that lie whole in `bytes`, which stand in the payload from `from` on, into `out`,
-/// which holds what the bytes before them gave; it is replaced where `from` is 0, and then left without points when the
-/// bytes end too early for any. `from` is 0 or PlaneEnds::whole of those before; `head` is the payload's head. Throws
-/// Error as above.
-PlaneEnds decodePart(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
-                     std::uint32_t from, std::span<const std::byte> bytes, NodeData& out);
+/// which holds what the bytes before them gave. `from` is 0 or PlaneEnds::whole of those before; `head` begins with the
+/// payload's head. Where `from` is 0, `out` is replaced (the memory it holds is used again), and left without points
+/// when the bytes end too early for any. Trusts nothing: throws Error (`points.bin: node r042: block checksum
+/// mismatch`) for anything that does not fit; `out` then holds nothing of use.
+PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
+                           std::uint32_t from, std::span<const std::byte> bytes, DecodeScratch& scratch, NodeData& out);
+
+/// The same of a payload's first bytes, drawBytes(record, precision) or more: `out` has as many position planes as the
+/// precision asks for, zeros where nothing is stored. Throws too where they are not at hand.
+void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
+                      Precision precision, NodeData& out);
 
 /// Decodes everything, in drawing order and without drawColours. Throws Error as above.
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload);

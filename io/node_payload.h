@@ -1,6 +1,4 @@
 #pragma once
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -73,25 +71,6 @@ inline FieldWidths planeWidths(const PayloadHead& head, int plane) {
 }
 inline std::size_t packedBytes(std::size_t count, int bitsAPoint) {
   return (count * static_cast<std::size_t>(bitsAPoint) + 7) / 8;
-}
-
-/// The points of a level stand in Morton order; drawn, they come in 16 passes over that order, so that a prefix which
-/// ends inside a level is even too. Each pass falls in the middle of the widest gap that the ones before have left.
-inline constexpr std::array<std::uint32_t, 16> kPasses{0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
-
-/// Values of one level from stored to drawing order. Reads in order, so that every cache line is touched once.
-template <class T>
-void interleaveLevel(const T* stored, std::size_t count, T* drawn) {
-  constexpr std::size_t kCount = kPasses.size();
-  T* to[kCount];  // by place in a group of 16
-  for (const std::size_t pass : kPasses) {
-    to[pass] = drawn;
-    drawn += count > pass ? (count - pass + kCount - 1) / kCount : 0;
-  }
-  const std::size_t groups = count / kCount;
-  for (std::size_t group = 0; group < groups; ++group)
-    for (std::size_t k = 0; k < kCount; ++k) to[k][group] = stored[group * kCount + k];
-  for (std::size_t k = 0; k < count % kCount; ++k) to[k][groups] = stored[groups * kCount + k];
 }
 
 }  // namespace strata

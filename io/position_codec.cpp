@@ -7,6 +7,7 @@
 #include "core/morton.h"
 #include "io/bit_packing.h"
 #include "io/column_codec.h"
+#include "io/instruction_sets.h"
 
 namespace strata {
 namespace {
@@ -36,78 +37,106 @@ int emptyBits(const PayloadHead& head, int axis, int depth) {
   return std::max(0, depth - head.start[axis] - head.bits[axis]);
 }
 
-/// How the lanes of a cell and the fields of a point become 10 bits an axis.
-struct Assembly {
-  struct Axis {
-    int cellRight = 0, cellLeft = 0, fieldRight = 0, fieldLeft = 0;
-    std::uint32_t fieldMask = 0;
-  };
-  Axis axis[3];
-  int sum = 0;
-
-  Assembly(const PayloadHead& head, int depth) {
+/// How the lanes of a cell become the leading of its points' 10 bits.
+class CellLanes {
+ public:
+  CellLanes(const PayloadHead& head, int depth) {
     for (int a = 0; a < 3; ++a) {
-      const int bits = planeBits(head.bits[a], 0);
-      const int width = bits - octreeBits(head, a, depth);
-      axis[a] = {10 * a + emptyBits(head, a, depth), width + 10 - bits, sum, 10 - bits, (1u << width) - 1};
-      sum += width;
+      const int bits = planeBits(head.bits[a], 0), width = bits - octreeBits(head, a, depth);
+      const int empty = emptyBits(head, a, depth);
+      axis_[a] = {10 * a + empty, 10 * a + width + 10 - bits, 1023u >> empty};
     }
   }
-  /// A cell's part of its points.
-  Lanes high(Lanes cell) const {
-    Lanes out = 0;
-    for (int a = 0; a < 3; ++a)
-      out |= lane((cell >> axis[a].cellRight & (1023u >> (axis[a].cellRight - 10 * a))) << axis[a].cellLeft, a);
-    return out;
+  void place(std::span<Lanes> cells) const {
+    const Axis x = axis_[0], y = axis_[1], z = axis_[2];
+    for (Lanes& cell : cells)
+      cell = (cell >> x.right & x.mask) << x.left | (cell >> y.right & y.mask) << y.left |
+             (cell >> z.right & z.mask) << z.left;
   }
-  Lanes low(std::uint32_t fields) const {
-    return lane((fields >> axis[0].fieldRight & axis[0].fieldMask) << axis[0].fieldLeft, 0) |
-           lane((fields >> axis[1].fieldRight & axis[1].fieldMask) << axis[1].fieldLeft, 1) |
-           lane((fields >> axis[2].fieldRight & axis[2].fieldMask) << axis[2].fieldLeft, 2);
-  }
+
+ private:
+  struct Axis {
+    int right, left;
+    std::uint32_t mask;
+  };
+  Axis axis_[3];
 };
 
-/// Expands the occupied cells of one level down to `depth`; moves `occupancy` on. False when more than `most` come out.
-bool expandCells(std::span<const std::uint8_t>& occupancy, int depth, std::size_t most, std::vector<Lanes>& cells,
-                 std::vector<Lanes>& next) {
-  cells.resize(most + 8);
-  next.resize(most + 8);
-  std::size_t count = 1;
-  cells[0] = 0;
-  for (int level = 0; level < depth; ++level) {
-    if (occupancy.size() < count) return false;
-    std::size_t to = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint8_t byte = occupancy[i];
-      if (byte == 0 || to + kChildren.count[byte] > most) return false;
-      const Lanes parent = cells[i] << 1;
-      for (std::size_t k = 0; k < 8; ++k) next[to + k] = parent | kChildren.octant[byte][k];
-      to += kChildren.count[byte];
-    }
-    occupancy = occupancy.subspan(count);
-    cells.swap(next);
-    count = to;
-  }
-  cells.resize(count);
-  return true;
+std::uint64_t loadWord(const void* from) {
+  std::uint64_t word;
+  std::memcpy(&word, from, sizeof word);
+  return word;
 }
 
-/// Puts cells, flags and fields of one level together.
-bool assembleLevel(const Assembly& assembly, std::vector<Lanes>& cells, const std::vector<std::uint8_t>& flags,
-                   std::size_t firstPoint, const std::byte* fields, std::span<Lanes> out) {
-  for (Lanes& cell : cells) cell = assembly.high(cell);
-  BitReader reader(fields);
-  std::size_t cell = ~std::size_t{0};
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::size_t at = firstPoint + i;
-    cell += flags[at >> 3] >> (at & 7) & 1u;
-    if (cell >= cells.size()) return false;
-    out[i] = cells[cell] | assembly.low(static_cast<std::uint32_t>(reader.get(assembly.sum)));
+/// Set bits from bit `first` to bit `end`; 8 bytes behind them are readable.
+std::size_t countBits(const std::uint8_t* bits, std::size_t first, std::size_t end) {
+  std::size_t count = 0;
+  for (std::size_t at = first; at < end; at += 56) {
+    const std::uint64_t word = loadWord(bits + at / 8) >> (at & 7);
+    const std::size_t left = end - at < 56 ? end - at : 56;
+    count += static_cast<std::size_t>(std::popcount(word & ((std::uint64_t{1} << left) - 1)));
   }
-  return cell + 1 == cells.size();
+  return count;
 }
 
 }  // namespace
+
+LaneFields::LaneFields(const FieldWidths& widths, const int (&left)[3]) : stride_(widths.sum()) {
+  int right = 0;
+  allTaken_ = true;
+  for (int a = 0; a < 3; ++a) {
+    const int taken = std::min(widths.axis[a], 10);
+    const int dropped = widths.axis[a] - taken;
+    axis_[a] = {right + dropped, 10 * a + left[a], (1u << taken) - 1};
+    places_ |= axis_[a].mask << axis_[a].left;
+    allTaken_ = allTaken_ && dropped == 0;
+    right += widths.axis[a];
+  }
+}
+
+template <class Place>
+inline __attribute__((always_inline)) void LaneFields::readEach(const std::byte* fields, std::size_t first,
+                                                                std::span<Lanes> out, Place&& place) const {
+  const auto stride = static_cast<std::size_t>(stride_);
+  std::size_t bit = first * stride;
+  for (Lanes& lanes : out) {
+    lanes = place(loadWord(fields + (bit >> 3)) >> (bit & 7));
+    bit += stride;
+  }
+}
+
+STRATA_TARGET_BMI2 void LaneFields::readByDeposit(const std::byte* fields, std::size_t first,
+                                                  std::span<Lanes> out) const {
+  const Lanes places = places_;
+  readEach(fields, first, out,
+           [places](std::uint64_t word) { return depositBits(static_cast<std::uint32_t>(word), places); });
+}
+
+void LaneFields::read(const std::byte* fields, std::size_t first, std::span<Lanes> out) const {
+  if (stride_ == 0) return std::fill(out.begin(), out.end(), 0u);
+  if (allTaken_ && hasBmi2()) return readByDeposit(fields, first, out);
+  const Axis x = axis_[0], y = axis_[1], z = axis_[2];
+  if (stride_ <= 57)
+    return readEach(fields, first, out, [=](std::uint64_t word) {
+      return (static_cast<std::uint32_t>(word >> x.right) & x.mask) << x.left |
+             (static_cast<std::uint32_t>(word >> y.right) & y.mask) << y.left |
+             (static_cast<std::uint32_t>(word >> z.right) & z.mask) << z.left;
+    });
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = 0;
+    for (const Axis& a : axis_) {
+      const std::size_t bit = (first + i) * static_cast<std::size_t>(stride_) + static_cast<std::size_t>(a.right);
+      out[i] |= (static_cast<std::uint32_t>(loadWord(fields + bit / 8) >> (bit & 7)) & a.mask) << a.left;
+    }
+  }
+}
+
+LaneFields planeFields(const PayloadHead& head, int plane) {
+  const FieldWidths widths = planeWidths(head, plane);
+  int left[3];
+  for (int a = 0; a < 3; ++a) left[a] = std::max(10 - widths.axis[a], 0);
+  return {widths, left};
+}
 
 int octreeBits(const PayloadHead& head, int axis, int depth) {
   return std::clamp(depth - head.start[axis], 0, static_cast<int>(head.bits[axis]));
@@ -188,39 +217,86 @@ void OctreeEncoder::append(std::vector<std::byte>& out) {
   appendColumn(flags_, out);
 }
 
-bool decodeOctree(const PayloadHead& head, std::span<const std::uint32_t> levelEnds, std::span<const std::byte> stored,
-                  std::span<Lanes> out) {
+bool OctreeDecoder::open(const PayloadHead& head, std::span<const std::uint32_t> levelEnds,
+                         std::span<const std::byte> stored) {
+  head_ = head;
+  levelEnds_ = levelEnds;
+  level_ = levelFirst_ = levelEnd_ = 0;
   std::uint32_t occupancyBytes;
   if (stored.size() < levelEnds.size() + sizeof occupancyBytes) return false;
-  const std::span<const std::byte> depths = stored.first(levelEnds.size());
-  std::memcpy(&occupancyBytes, stored.data() + depths.size(), sizeof occupancyBytes);
-  stored = stored.subspan(depths.size() + sizeof occupancyBytes);
-  if (occupancyBytes > std::uint64_t{kOctreeLevels} * out.size()) return false;
-  std::vector<std::uint8_t> occupancy(occupancyBytes), flags((out.size() + 7) / 8);
-  if (!takeColumn(stored, occupancy) || !takeColumn(stored, flags)) return false;
-
-  std::vector<Lanes> cells, spare;
-  std::span<const std::uint8_t> rest(occupancy);
-  std::size_t first = 0;
-  for (std::size_t level = 0; level < levelEnds.size(); ++level) {
-    const std::size_t count = levelEnds[level] - first;
-    const auto depth = static_cast<int>(depths[level]);
-    if (depth > kOctreeLevels || !expandCells(rest, depth, count, cells, spare)) return false;
-    const Assembly assembly(head, depth);
-    const std::size_t bytes = packedBytes(count, assembly.sum);
-    if (bytes > stored.size()) return false;
-    if (!assembleLevel(assembly, cells, flags, first, stored.data(), out.subspan(first, count))) return false;
-    stored = stored.subspan(bytes);
-    first += count;
-  }
-  return rest.empty() && stored.empty();
+  depths_ = stored.first(levelEnds.size());
+  std::memcpy(&occupancyBytes, stored.data() + depths_.size(), sizeof occupancyBytes);
+  rest_ = stored.subspan(depths_.size() + sizeof occupancyBytes);
+  const std::size_t points = levelEnds.empty() ? 0 : levelEnds.back();
+  if (occupancyBytes > std::uint64_t{kOctreeLevels} * points) return false;
+  const std::size_t flagBytes = (points + 7) / 8;
+  columns_.resize(occupancyBytes + flagBytes + kBitSlack);
+  occupancy_ = std::span(columns_).first(occupancyBytes);
+  flags_ = columns_.data() + occupancyBytes;
+  return takeColumn(rest_, std::span(columns_).first(occupancyBytes)) &&
+         takeColumn(rest_, std::span(columns_).subspan(occupancyBytes, flagBytes));
 }
 
-bool decodePacked(const PayloadHead& head, std::span<const std::byte> stored, std::span<Lanes> out) {
-  const Assembly assembly(head, 0);
-  if (stored.size() != packedBytes(out.size(), assembly.sum)) return false;
-  BitReader reader(stored.data());
-  for (Lanes& point : out) point = assembly.low(static_cast<std::uint32_t>(reader.get(assembly.sum)));
+/// The occupied cells of the next level of the order, down to `depth`. False when they are more than `most`.
+bool OctreeDecoder::expandCells(int depth, std::size_t most) {
+  cells_.resize(std::max(cells_.size(), most + 8));
+  spare_.resize(cells_.size());
+  std::size_t count = 1;
+  cells_[0] = 0;
+  for (int level = 0; level < depth; ++level) {
+    if (occupancy_.size() < count) return false;
+    std::size_t to = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint8_t byte = occupancy_[i];
+      if (byte == 0 || to + kChildren.count[byte] > most) return false;
+      const Lanes parent = cells_[i] << 1;
+      Lanes* const next = spare_.data() + to;
+      for (std::size_t k = 0; k < 8; ++k) next[k] = parent | kChildren.octant[byte][k];
+      to += kChildren.count[byte];
+    }
+    occupancy_ = occupancy_.subspan(count);
+    cells_.swap(spare_);
+    count = to;
+  }
+  CellLanes(head_, depth).place(std::span(cells_).first(count));
+  // Every cell has a point that is the first in it, and so has the level.
+  const bool begins = (flags_[levelFirst_ / 8] >> (levelFirst_ & 7) & 1) != 0;
+  return begins && countBits(flags_, levelFirst_, levelEnd_) == count;
+}
+
+bool OctreeDecoder::openLevel(std::size_t first) {
+  const auto depth = static_cast<int>(depths_[level_]);
+  levelFirst_ = first;
+  levelEnd_ = levelEnds_[level_++];
+  if (depth > kOctreeLevels || !expandCells(depth, levelEnd_ - first)) return false;
+  FieldWidths widths;
+  int left[3];
+  for (int a = 0; a < 3; ++a) {
+    const int bits = planeBits(head_.bits[a], 0);
+    widths.axis[a] = bits - octreeBits(head_, a, depth);
+    left[a] = 10 - bits;
+  }
+  fields_ = LaneFields(widths, left);
+  const std::size_t bytes = packedBytes(levelEnd_ - first, widths.sum());
+  if (bytes > rest_.size()) return false;
+  levelFields_ = rest_.data();
+  rest_ = rest_.subspan(bytes);
+  cell_ = 0;
+  return true;
+}
+
+bool OctreeDecoder::read(std::size_t first, std::span<Lanes> out) {
+  if (first == levelEnd_ && !openLevel(first)) return false;
+  fields_.read(levelFields_, first - levelFirst_, out);
+  const Lanes* cell = cells_.data() + cell_;
+  for (std::size_t i = 0; i < out.size();) {
+    const std::size_t at = first + i, end = std::min(out.size(), i + 56);
+    for (std::uint64_t flags = loadWord(flags_ + at / 8) >> (at & 7); i < end; ++i, flags >>= 1) {
+      cell += flags & 1;
+      out[i] |= cell[-1];
+    }
+  }
+  cell_ = static_cast<std::size_t>(cell - cells_.data());
   return true;
 }
 

@@ -45,12 +45,62 @@ class OctreeEncoder {
   std::vector<std::uint8_t> reversed_;
 };
 
-/// Decodes plane 0 of points in stored order: fields aligned to the top of 10 bits. `stored` has kBitSlack readable
-/// bytes behind its end. False when the bytes do not fit.
-bool decodeOctree(const PayloadHead& head, std::span<const std::uint32_t> levelEnds, std::span<const std::byte> stored,
-                  std::span<Lanes> out);
+/// The bit fields of points of one level or plane, least significant bit first, x before y before z; and what of them
+/// becomes the points' lanes: of each axis the leading bits, ten at most.
+class LaneFields {
+ public:
+  /// Fields so wide; an axis' bits start `left` above the lane's lowest bit.
+  LaneFields() = default;
+  LaneFields(const FieldWidths& widths, const int (&left)[3]);
 
-/// The same of a plane of bit fields.
-bool decodePacked(const PayloadHead& head, std::span<const std::byte> stored, std::span<Lanes> out);
+  int bitsAPoint() const { return stride_; }
+  /// Lanes of the points from `first` on. There are kBitSlack readable bytes behind the last field.
+  void read(const std::byte* fields, std::size_t first, std::span<Lanes> out) const;
+
+ private:
+  struct Axis {
+    int right = 0, left = 0;  ///< of the lowest bit taken, in the point's fields and in its lanes
+    std::uint32_t mask = 0;
+  };
+  template <class Place>
+  void readEach(const std::byte* fields, std::size_t first, std::span<Lanes> out, Place&& place) const;
+  void readByDeposit(const std::byte* fields, std::size_t first, std::span<Lanes> out) const;
+
+  Axis axis_[3];
+  int stride_ = 0;
+  Lanes places_ = 0;       ///< all bits of lanes that fields go to
+  bool allTaken_ = false;  ///< no axis has more bits than go to its lane
+};
+
+/// Plane 1 or 2 as lanes: fields aligned to the top of 10 bits.
+LaneFields planeFields(const PayloadHead& head, int plane);
+
+/// Gives back plane 0 of points in stored order: fields aligned to the top of 10 bits.
+class OctreeDecoder {
+ public:
+  /// False when the bytes do not fit. `stored` has kBitSlack readable bytes behind its end; what is given has to stay
+  /// until all has been read.
+  bool open(const PayloadHead& head, std::span<const std::uint32_t> levelEnds, std::span<const std::byte> stored);
+  /// The next points, which are of one level, the first of them the node's point `first`. False as above.
+  bool read(std::size_t first, std::span<Lanes> out);
+  /// Nothing is left, as it has to be after the last point.
+  bool atEnd() const { return level_ == levelEnds_.size() && occupancy_.empty() && rest_.empty(); }
+
+ private:
+  bool openLevel(std::size_t first);
+  bool expandCells(int depth, std::size_t most);
+
+  PayloadHead head_{};
+  std::span<const std::uint32_t> levelEnds_;
+  std::span<const std::byte> depths_, rest_;
+  std::vector<std::uint8_t> columns_;  ///< of occupancy, then of flags
+  std::span<const std::uint8_t> occupancy_;
+  const std::uint8_t* flags_ = nullptr;
+  std::size_t level_ = 0, levelFirst_ = 0, levelEnd_ = 0;  ///< the next level; points of the one before it
+  LaneFields fields_;
+  const std::byte* levelFields_ = nullptr;
+  std::vector<Lanes> cells_, spare_;
+  std::size_t cell_ = 0;  ///< of the point before, counted from 1
+};
 
 }  // namespace strata

@@ -61,7 +61,7 @@ std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_
 }
 
 bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders,
-                        StreamedNode& out) const {
+                        StreamedNode& out) {
   const NodeRecord& record = store_->hierarchy().nodes[request.node];
   std::span<const std::byte> bytes = bytes_.subspan(static_cast<std::size_t>(request.offset - offset_), request.bytes);
   std::vector<std::byte> joined;  // with the part of a plane that the read before has brought
@@ -79,7 +79,7 @@ bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, 
     out.head.assign(head.begin(), head.end());
     out.occluding.occluders.clear();
   }
-  out.ends = decodePart(record, store_->info(), out.head, from, bytes, out);
+  out.ends = decodeForDrawing(record, store_->info(), out.head, from, bytes, scratch_, out);
   if (out.position[0].empty() && record.pointCount > 0) return false;
   // What is left of the bytes is kept behind the head, where it is little.
   const std::span<const std::byte> rest = bytes.subspan(out.ends.whole - from);

@@ -35,11 +35,12 @@ class NodeLoader {
   /// Decodes one of the nodes that were read, using the memory of `out` again. `before` is the node as it has been so
   /// far, where the request is for the rest of it; else null. False when the request was for too few bytes to have any
   /// points. Throws Error when its bytes are not those that were written.
-  bool decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders, StreamedNode& out) const;
+  bool decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders, StreamedNode& out);
 
  private:
   const std::shared_ptr<const Store> store_;
   NodeReader reader_;
+  DecodeScratch scratch_;
   std::span<const std::byte> bytes_;
   std::uint64_t offset_ = 0;  ///< of bytes_ in points.bin
 };

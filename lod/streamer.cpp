@@ -294,7 +294,7 @@ bool Streamer::loadTogether(NodeLoader& loader, std::span<const LoadRequest> req
 }
 
 /// False when the request was for too few bytes.
-bool Streamer::finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer) {
+bool Streamer::finishLoad(NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer) {
   try {
     const NodeCache::Data before = request.from > 0 ? cache_.peek(request.node) : nullptr;
     if ((before != nullptr ? before->leadingBytes : 0) != request.from) {  // evicted, or another was quicker

@@ -130,7 +130,7 @@ class Streamer {
   void keepWanted(std::vector<LoadRequest>& requests);
   bool loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop, TraceLane* lane,
                     std::unique_ptr<StreamedNode>& buffer);
-  bool finishLoad(const NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer);
+  bool finishLoad(NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer);
   void releaseList(PinnedList& list, std::vector<NodeCache::Data>& out);
   void takeLoadedNodes();
   void recycle();

@@ -5,7 +5,7 @@
 #   BUILD    folder with bin/ and tests/ (default: build/release)     FOLDER  scratch, what is in it is used again
 #            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
 #   -q       quick: everything a hundredth, only to see that it works
-#   SECTION  machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights
+#   SECTION  machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights
 #            real largest larger targets; default: all but larger and largest
 # Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M:1G" (points[:--memory]), CITY=50e6 and ROOM=20e6 (points
 # of the stores that are flown through), LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers),
@@ -27,7 +27,7 @@ while getopts b:d:o:q option; do
 done
 shift $((OPTIND - 1))
 sections=("$@")
-[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection streaming rasterizers progressive kanzok schuetz guenther flights real targets)
+[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights real targets)
 if [ $quick = 1 ]; then
   : "${CONVERT:=100k}" "${LARGER:=200k 300k:512M}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
@@ -82,6 +82,18 @@ store() {
   table planes "${infos[@]}"
 }
 selection() { quietly selection_bench --benchmark_format=json | table benchmark nodes hidden occluders Mpoints tested; }
+loading() {
+  local stores=(las_city red_rocks room)
+  [ -e "$folder/las_city.strata" ] || stores[0]=loading_city
+  made_store "${stores[0]}" "synthetic:city?points=10e6&seed=1"
+  [ ! -e "$RED_ROCKS" ] || made_store red_rocks "$RED_ROCKS"
+  made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
+  for name in "${stores[@]}"; do
+    [ -e "$folder/$name.strata" ] || continue
+    printf '\n`%s`:\n\n' "${name#l*_}"
+    quietly decode_bench "$folder/$name.strata" --benchmark_format=json | table benchmark ns/point MB/s bytes/point
+  done
+}
 streaming() {
   made_store room "synthetic:room?points=$ROOM&seed=1" --node-points 16384
   made_store flown "synthetic:room?points=$FLOWN&seed=1" --node-points 16384

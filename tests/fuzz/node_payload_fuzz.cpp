@@ -36,10 +36,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   record.headBytes = headBytes;
   record.headChecksum = strata::checksum(std::span(payload).first(headBytes));
   record.payloadBytes = static_cast<std::uint32_t>(payload.size());
-  for (const auto precision : {strata::Precision::low10, strata::Precision::full30}) {
+  const std::uint32_t half = static_cast<std::uint32_t>(payload.size() / 2);
+  for (const std::uint32_t bytes : {half, record.payloadBytes}) {
     strata::NodeData drawn;
+    strata::DecodeScratch scratch;
     try {
-      strata::decodeForDrawing(record, info, payload, precision, drawn);
+      const std::span<const std::byte> all(payload);
+      const strata::PlaneEnds ends = strata::decodeForDrawing(record, info, all, 0, all.first(bytes), scratch, drawn);
+      if (!drawn.position[0].empty() && ends.whole <= bytes)
+        strata::decodeForDrawing(record, info, all, ends.whole, all.subspan(ends.whole), scratch, drawn);
     } catch (const strata::Error&) {
     }
   }
