@@ -64,7 +64,7 @@ struct DrawOptions {
   int pointSize = 1;         ///< least side of the square of pixels a point covers, 1 to kLargestPoint
   float pointMetres = 0.0f;  ///< side of that square in metres, where it is more pixels than pointSize
   int fill = 1;              ///< 3, 5 or 7: side of the window out of which holes are filled, see fillHoles(); 1: none
-  bool jumpFlood = false;    ///< points of one pixel, holes filled with splats as large as they lie apart: floodFill()
+  bool jumpFlood = false;    ///< holes are filled with splats as large as points lie apart, then points get their size
   bool edl = false;          ///< eye-dome lighting over the finished picture
   float edlStrength = 1.0f;
   Clip clip;

@@ -138,6 +138,22 @@ void finishRow(const VisibilityBuffer& buffer, const View& view, const DrawOptio
   }
 }
 
+/// After floodFill(): the frame takes from the buffer, whose points are as large as asked for by now, what fills a
+/// pixel that is empty or farther away than kBlendDepth.
+void takeLargePoints(const VisibilityBuffer& buffer, const ThreadPool& pool, Frame& frame) {
+  pool.parallelFor(buffer.pixels.size(), kRowsAtOnce * 1024, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      const std::uint32_t from = pixelId(buffer.pixels[i]);
+      const float depth = pixelDepth(buffer.pixels[i]);
+      if (from == Frame::kNoPoint) continue;
+      if (frame.pointId[i] != Frame::kNoPoint && frame.depth[i] <= depth * DrawOptions::kBlendDepth) continue;
+      frame.depth[i] = depth;
+      frame.colour[i] = buffer.scratch.colours[from];
+      frame.pointId[i] = buffer.scratch.ids[from];
+    }
+  });
+}
+
 }  // namespace
 
 void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
@@ -151,8 +167,7 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
   frame.depth.resize(count);
   frame.pointId.resize(count);
   const Colouring colouring(list, view, options, buffer);
-  const bool onePixel = options.colour == ColourMode::overdraw || options.jumpFlood;
-  const PointSizes sizes = onePixel ? PointSizes(1) : PointSizes(options, view);
+  const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
   const FillSizes fills(options, view);
   if (sizes.alwaysOne() && fills.none()) {
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
@@ -168,14 +183,18 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
       colouring.colour(first * width, end * width, buffer.scratch.colours.data() + first * width);
       pointAtPixels(buffer, first * width, end * width);
     });
-    dilate(buffer, sizes, pool);
+    if (!options.jumpFlood) dilate(buffer, sizes, pool);
     fillHoles(buffer, fills, pool);
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
       for (std::size_t y = first; y < end; ++y)
         finishRow(buffer, view, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
     });
   }
-  if (options.jumpFlood) floodFill(list, view, {}, pool, frame);
+  if (options.jumpFlood) {
+    floodFill(list, view, {}, pool, frame);
+    dilate(buffer, sizes, pool);
+    if (!sizes.alwaysOne()) takeLargePoints(buffer, pool, frame);
+  }
   if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);
 }
 

@@ -180,8 +180,9 @@ View ahead(int width = 300, int height = 200) {
   return view;
 }
 
-Frame drawn(const RenderList& list, const View& view, bool jumpFlood) {
+Frame drawn(const RenderList& list, const View& view, bool jumpFlood, int pointSize = 1) {
   DrawOptions options;
+  options.pointSize = pointSize;
   options.jumpFlood = jumpFlood;
   Frame frame;
   createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
@@ -271,6 +272,23 @@ TEST(FloodFill, MakesNothingOfSinglePoints) {
   lonely->spacing = 0.1f;  // far less than they lie apart
   const RenderList apart = test::makeList({lonely});
   EXPECT_EQ(drawn(apart, ahead(), false).colour, drawn(apart, ahead(), true).colour);
+}
+
+TEST(FloodFill, GivesPointsTheirSizeWhereNothingWasFilled) {
+  auto lonely = std::make_shared<NodeData>(*wall(1, 10.0, 12.0, 3.0, kEverywhere));
+  lonely->spacing = 0.1f;  // single points
+  const RenderList apart = test::makeList({lonely}), sparse = test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)});
+  for (const int size : {2, 5}) {
+    const Frame large = drawn(apart, ahead(), true, size);
+    EXPECT_EQ(drawn(apart, ahead(), false, size).colour, large.colour) << "no splats: squares as ever";
+    EXPECT_NE(drawn(apart, ahead(), true).colour, large.colour);
+    const Frame filled = drawn(sparse, ahead(), true), both = drawn(sparse, ahead(), true, size);
+    for (std::size_t i = 0; i < filled.pointId.size(); ++i) {
+      if (filled.pointId[i] == Frame::kNoPoint) continue;
+      ASSERT_EQ(both.colour[i], filled.colour[i]) << "a wall that is filled stays smooth";
+      ASSERT_EQ(both.pointId[i], filled.pointId[i]);
+    }
+  }
 }
 
 /// Lines of a scanner: points 0.12 m apart on lines that are 0.6 m apart.
