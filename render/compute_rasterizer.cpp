@@ -7,6 +7,7 @@
 #include "core/log.h"
 #include "render/colour_map.h"
 #include "render/compute_target.h"
+#include "render/gl_flood.h"
 #include "render/gl_scene.h"
 #include "render/resolve.h"
 #include "render/stopwatch.h"
@@ -125,7 +126,8 @@ class ComputeRasterizer final : public Rasterizer {
     }
     scene_.gl().UseProgram(0);
     stats.drawMs = watch.lapMs();
-    for (std::size_t v = 0; v < views.size(); ++v) resolveFrame(list, views[v], options, buffers_[v], pool_, frames[v]);
+    for (std::size_t v = 0; v < views.size(); ++v)
+      resolveFrame(list, views[v], options, buffers_[v], pool_, frames[v], &flood_);
     stats.resolveMs = watch.lapMs();
     return stats;
   }
@@ -220,6 +222,7 @@ class ComputeRasterizer final : public Rasterizer {
   ProgramCache passes32_, blend_, count_;
   std::optional<ProgramCache> onePass_;
   ComputeTarget target_;
+  GlFlood flood_{scene_.gl(), scene_.groupSize()};
   GlTimestamp begin_, end_;
   std::vector<VisibilityBuffer> buffers_;
   bool warned_ = false;

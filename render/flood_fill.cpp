@@ -1,5 +1,7 @@
 #include "render/flood_fill.h"
 
+#include <algorithm>
+
 #include "render/flood_splats.h"
 #include "render/stopwatch.h"
 
@@ -10,16 +12,17 @@ FloodStats floodFill(const RenderList& list, const View& view, const FloodSettin
   FloodStats stats;
   Stopwatch watch;
   const FloodSeeds seeds = collectSeeds(list, view, settings, frame, pool);
-  const int firstStep = firstFloodStep(seeds, settings);
-  stats.seeds = static_cast<std::uint32_t>(seeds.seeds.size());
+  stats.seeds = static_cast<std::uint32_t>(
+      seeds.at.size() - static_cast<std::size_t>(std::count(seeds.at.begin(), seeds.at.end(), kNoPixel)));
   stats.projectMs = watch.lapMs();
-  const std::vector<FloodLayers> layers = findLayers(seeds, firstStep, settings, pool);
+  if (stats.seeds == 0) return stats;
+  const std::vector<FloodLayers> layers = findLayers(seeds, settings, pool);
   stats.layersMs = watch.lapMs();
-  const std::vector<FloodNeighbours> neighbours = findNeighbours(seeds, layers, firstStep, settings, pool);
+  const std::vector<FloodNeighbours> neighbours = findNeighbours(seeds, layers, settings, pool);
   stats.neighboursMs = watch.lapMs();
-  const std::vector<FloodSplat> splats = makeSplats(seeds, neighbours, view, settings, pool);
+  const std::vector<FloodSplat> splats = makeSplats(seeds, neighbours, frame.width, frame.height, settings, pool);
   stats.splats = static_cast<std::uint32_t>(splats.size());
-  stats.filled = drawSplats(splats, view, settings, pool, frame);
+  stats.filled = drawSplats(splats, settings, pool, frame);
   stats.renderMs = watch.lapMs();
   return stats;
 }

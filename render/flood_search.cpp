@@ -1,239 +1,246 @@
 #include "render/flood_search.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <limits>
+
+#include "render/flood_kernel.h"
 
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kNone = FloodSeeds::kNone;
 constexpr std::size_t kRowsAtOnce = 8;
 constexpr std::size_t kClosest = 4;  ///< Farias 2014, 4.3
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-/// Calls visit(index of a pixel `step` away) for the up to eight of them that are in the picture.
-template <typename Visit>
-void forEachJump(int x, int y, int step, int width, int height, Visit visit) {
-  for (int v = y - step; v <= y + step; v += step) {
-    if (v < 0 || v >= height) continue;
-    for (int u = x - step; u <= x + step; u += step)
-      if (u >= 0 && u < width && (u != x || v != y))
-        visit(static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u));
-  }
-}
+float distance2(const glm::vec3& a, const glm::vec3& b) { return glm::dot(b - a, b - a); }
 
-/// The two halves of sameLayer(): most pairs end with the first.
-inline bool inReach(const FloodSeed& a, const FloodSeed& b) {
-  const glm::vec3 apart = b.position - a.position;
-  const float reach = std::min(a.reach, b.reach);
-  return glm::dot(apart, apart) <= reach * reach;
-}
-
-bool alike(const FloodSeed& a, const FloodSeed& b, const FloodSettings& settings) {
-  constexpr glm::vec3 kUnknown(0.0f);
-  if (a.normal == kUnknown || b.normal == kUnknown) return true;
-  const glm::vec3 apart = b.position - a.position;
-  const float off = std::max(std::abs(glm::dot(apart, a.normal)), std::abs(glm::dot(apart, b.normal)));
-  return std::abs(glm::dot(a.normal, b.normal)) >= settings.angle &&
-         off < settings.continuity * std::min(a.reach, b.reach);
-}
-
-/// What the layer search asks of most candidates, in little memory.
-struct SeedPlace {
-  std::int16_t x, y;
-  std::int32_t reach2;  ///< squared pixels
-};
-
-std::vector<SeedPlace> placesOf(const FloodSeeds& seeds, const FloodSettings& settings) {
-  std::vector<SeedPlace> places;
-  places.reserve(seeds.seeds.size());
-  const auto farthest = static_cast<float>(2 * settings.firstStep);
-  for (const FloodSeed& seed : seeds.seeds) {
-    const float reach = std::min(seed.reachPx, farthest) + 1.0f;
-    places.push_back({static_cast<std::int16_t>(seed.x), static_cast<std::int16_t>(seed.y),
-                      static_cast<std::int32_t>(reach * reach)});
-  }
-  return places;
-}
-
-/// The layers of one pixel while candidates come in.
-class LayerList {
+/// Of each square of kFloodTile x kFloodTile pixels the largest reach, in pixels, of the seeds that reach into it; no
+/// more than `farthest`, which is as far as all jumps together go.
+class NearbyReaches {
  public:
-  LayerList(const FloodSeeds& seeds, const std::vector<SeedPlace>& places, const FloodSettings& settings, int x, int y,
-            FloodLayers& layers)
-      : seeds_(seeds), places_(places), settings_(settings), x_(x), y_(y), layers_(layers) {
-    for (std::size_t i = 0; i < layers_.size() && layers_[i] != kNone; ++i) distances_[i] = distance2(layers_[i]);
+  NearbyReaches(const FloodSeeds& seeds, float farthest)
+      : columns_((seeds.width + kFloodTile - 1) / kFloodTile), rows_((seeds.height + kFloodTile - 1) / kFloodTile) {
+    std::vector<float> own(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0f);
+    std::size_t i = 0;
+    for (int y = 0; y < seeds.height; ++y)
+      for (int x = 0; x < seeds.width; ++x, ++i)
+        if (seeds.at[i] != kNoPixel) {
+          float& largest = own[index(x / kFloodTile, y / kFloodTile)];
+          largest = std::max(largest, std::min(seeds.reachPx(i), farthest));
+        }
+    reach_ = own;
+    for (int row = 0; row < rows_; ++row)
+      for (int column = 0; column < columns_; ++column) spread(own[index(column, row)], column, row);
   }
 
-  void consider(std::uint32_t candidate) {
-    for (const std::uint32_t layer : layers_)
-      if (layer == candidate) return;
-    const int distance = distance2(candidate);
-    if (distance > places_[candidate].reach2) return;
-    std::size_t farthest = 0;
-    for (std::size_t i = 0; i < layers_.size(); ++i) {
-      if (layers_[i] == kNone) return put(i, candidate, distance);
-      const FloodSeed &held = seeds_.seeds[layers_[i]], &other = seeds_.seeds[candidate];
-      if (inReach(held, other) && alike(held, other, settings_)) {
-        if (closer(distance, candidate, i)) put(i, candidate, distance);
-        return;
-      }
-      if (!closer(distances_[i], layers_[i], farthest)) farthest = i;
-    }
-    if (closer(distance, candidate, farthest)) put(farthest, candidate, distance);
-  }
+  float at(int x, int y) const { return reach_[index(x / kFloodTile, y / kFloodTile)]; }
 
  private:
-  int distance2(std::uint32_t seed) const {
-    const int dx = places_[seed].x - x_, dy = places_[seed].y - y_;
-    return dx * dx + dy * dy;
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
   }
-  bool closer(int distance, std::uint32_t seed, std::size_t than) const {
-    return distance < distances_[than] || (distance == distances_[than] && seed < layers_[than]);
-  }
-  void put(std::size_t i, std::uint32_t seed, int distance) {
-    layers_[i] = seed;
-    distances_[i] = distance;
+  void spread(float reach, int column, int row) {
+    if (!(reach > 0.0f)) return;
+    const int tiles = static_cast<int>(reach) / kFloodTile + 1;
+    for (int v = std::max(row - tiles, 0); v <= std::min(row + tiles, rows_ - 1); ++v)
+      for (int u = std::max(column - tiles, 0); u <= std::min(column + tiles, columns_ - 1); ++u)
+        reach_[index(u, v)] = std::max(reach_[index(u, v)], reach);
   }
 
-  const FloodSeeds& seeds_;
-  const std::vector<SeedPlace>& places_;
-  const FloodSettings& settings_;
-  int x_, y_;
-  FloodLayers& layers_;
-  int distances_[kFloodLayers];
+  int columns_, rows_;
+  std::vector<float> reach_;
+};
+
+/// The two halves of sameLayer(): most pairs end with the first.
+bool inReach(const FloodPlace& a, const FloodPlace& b, float distance2) {
+  const float reach = std::min(a.reach, b.reach);
+  return distance2 <= reach * reach;
+}
+
+bool alike(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
+  constexpr glm::vec3 kUnknown(0.0f);
+  if (seeds.normal.empty()) return true;
+  const glm::vec3 normalA = unpackFloodNormal(seeds.normal[seeds.index(a)]);
+  const glm::vec3 normalB = unpackFloodNormal(seeds.normal[seeds.index(b)]);
+  if (normalA == kUnknown || normalB == kUnknown) return true;
+  const glm::vec3 apart = seeds.position(b) - seeds.position(a);
+  const float off = std::max(std::abs(glm::dot(apart, normalA)), std::abs(glm::dot(apart, normalB)));
+  return std::abs(glm::dot(normalA, normalB)) >= settings.angle &&
+         off < settings.continuity * std::min(seeds.place[seeds.index(a)].reach, seeds.place[seeds.index(b)].reach);
+}
+
+/// Over the distance of two points whose pixels are one apart, what it is at least where the first is `metres` away.
+float leastShare(const FloodSeeds& seeds) {
+  if (!seeds.lens.perspective) return 1.0f;
+  const auto farther = [](float middle, int side) { return std::max(middle, static_cast<float>(2 * side) - middle); };
+  const float x = seeds.lens.perPixel * farther(seeds.lens.middleX, seeds.width);
+  const float y = seeds.lens.perPixel * farther(seeds.lens.middleY, seeds.height);
+  return 1.0f / std::sqrt(1.0f + x * x + y * y);
+}
+
+/// Candidates of one seed, and the room that keepClose() wants.
+struct Candidates {
+  static constexpr std::size_t kMost = 8 * (kFloodLayers + kFloodNeighbours);
+
+  template <std::size_t n>
+  void add(const std::array<FloodPixel, n>& some) {
+    std::copy(some.begin(), some.end(), seeds + count);
+    count += n;
+  }
+
+  FloodPixel seeds[kMost + kFloodTile];
+  std::size_t count = 0;
 };
 
 /// The neighbours of one seed while candidates come in.
 class NeighbourList {
  public:
-  NeighbourList(const FloodSeeds& seeds, const FloodSettings& settings, std::uint32_t seed, FloodNeighbours& found)
-      : seeds_(seeds), settings_(settings), seed_(seeds.seeds[seed]), found_(found) {
-    for (std::size_t i = 0; i < found_.size(); ++i)
-      if (found_[i] != kNone) distances_[i] = distance2(seeds_.seeds[found_[i]]);
+  NeighbourList(const FloodSeeds& seeds, const FloodSettings& settings, float leastShare, FloodPixel seed,
+                FloodNeighbours& found)
+      : seeds_(seeds), settings_(settings), found_(found) {
+    const float least = 0.999f * leastShare * seeds.lens.metres(seeds.place[seeds.index(seed)].depth);
+    bounds_.seed = seed;
+    bounds_.leastPerPixel2 = least * least;
+    distancesTo(seeds, seed, found, distances_);
+    std::copy_n(distances_, kFloodNeighbours, bounds_.farthest2);
+    std::copy(found.begin(), found.end(), bounds_.held);
+    if (settings.sectors) return;
+    std::fill_n(bounds_.farthest2, kFloodNeighbours, distances_[kClosest - 1]);
+    std::fill_n(bounds_.held, kFloodNeighbours, kNoPixel);
   }
 
-  void consider(std::uint32_t candidate) {
-    const FloodSeed& other = seeds_.seeds[candidate];
-    if (settings_.sectors) {
-      const int dx = int{other.x} - int{seed_.x}, dy = int{other.y} - int{seed_.y};
-      const auto sector = static_cast<std::size_t>(floodSector(static_cast<float>(dx), static_cast<float>(dy)));
-      if (found_[sector] == candidate) return;
-      const float distance = distance2(other);
-      if (before(distance, candidate, sector) && fits(distance, other)) put(sector, candidate, distance);
-      return;
-    }
-    const float distance = distance2(other);
-    if (!before(distance, candidate, kClosest - 1) || !fits(distance, other)) return;
-    std::size_t place = 0;
-    for (; place < kClosest && found_[place] != kNone && !before(distance, candidate, place); ++place)
-      if (seeds_.seeds[found_[place]].position == other.position) return;
-    for (std::size_t i = kClosest - 1; i > place; --i)
-      if (found_[i - 1] != kNone) put(i, found_[i - 1], distances_[i - 1]);
-    put(place, candidate, distance);
+  void consider(const Candidates& candidates) {
+    FloodPixel kept[Candidates::kMost + kFloodTile];
+    float distances[Candidates::kMost + kFloodTile];
+    const std::size_t count =
+        keepClose(seeds_, settings_, bounds_, candidates.seeds, candidates.count, kept, distances);
+    for (std::size_t i = 0; i < count; ++i)
+      settings_.sectors ? considerInSector(kept[i], distances[i]) : considerOfAll(kept[i], distances[i]);
   }
 
  private:
-  float distance2(const FloodSeed& other) const {
-    const glm::vec3 apart = other.position - seed_.position;
-    return glm::dot(apart, apart);
+  void considerInSector(FloodPixel candidate, float distance2) {
+    const auto sector =
+        static_cast<std::size_t>(floodSector(static_cast<float>(pixelColumn(candidate) - pixelColumn(bounds_.seed)),
+                                             static_cast<float>(pixelRow(candidate) - pixelRow(bounds_.seed))));
+    if (before(distance2, candidate, sector)) put(sector, candidate, distance2);
   }
-  bool fits(float distance, const FloodSeed& other) const {
-    return distance > 0.0f && inReach(seed_, other) && alike(seed_, other, settings_);
+  void considerOfAll(FloodPixel candidate, float distance2) {
+    if (!before(distance2, candidate, kClosest - 1)) return;
+    std::size_t place = 0;
+    for (; place < kClosest && !before(distance2, candidate, place); ++place)
+      if (found_[place] == candidate) return;
+    for (std::size_t i = kClosest - 1; i > place; --i) put(i, found_[i - 1], distances_[i - 1]);
+    put(place, candidate, distance2);
   }
-  bool before(float distance, std::uint32_t candidate, std::size_t place) const {
-    return found_[place] == kNone || distance < distances_[place] ||
-           (distance == distances_[place] && candidate < found_[place]);
+  bool before(float distance2, FloodPixel candidate, std::size_t place) const {
+    return distance2 < distances_[place] || (distance2 == distances_[place] && candidate < found_[place]);
   }
-  void put(std::size_t i, std::uint32_t candidate, float distance) {
+  void put(std::size_t i, FloodPixel candidate, float distance2) {
     found_[i] = candidate;
-    distances_[i] = distance;
+    distances_[i] = distance2;
   }
 
   const FloodSeeds& seeds_;
   const FloodSettings& settings_;
-  const FloodSeed& seed_;
   FloodNeighbours& found_;
   float distances_[kFloodNeighbours];
+  NeighbourBounds bounds_;
 };
+
+/// Calls visit(seed, its index) for all of them, rows at once on several threads.
+template <typename Visit>
+void forEachSeed(const FloodSeeds& seeds, const ThreadPool& pool, Visit visit) {
+  const auto width = static_cast<std::size_t>(seeds.width);
+  pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i)
+      if (seeds.at[i] != kNoPixel) visit(seeds.at[i], i);
+  });
+}
+
+LayerPlanes emptyPlanes(const FloodSeeds& seeds, int firstStep) {
+  LayerPlanes out{};
+  out.margin = firstStep + kFloodTile;
+  out.stride = static_cast<std::size_t>(seeds.width + 2 * out.margin);
+  for (std::vector<FloodPixel>& plane : out.planes)
+    plane.assign(out.stride * static_cast<std::size_t>(seeds.height), kNoPixel);
+  return out;
+}
 
 }  // namespace
 
-bool sameLayer(const FloodSeed& a, const FloodSeed& b, const FloodSettings& settings) {
-  return inReach(a, b) && alike(a, b, settings);
+bool sameLayer(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
+  return inReach(seeds.place[seeds.index(a)], seeds.place[seeds.index(b)],
+                 distance2(seeds.position(a), seeds.position(b))) &&
+         alike(seeds, a, b, settings);
 }
 
-int firstFloodStep(const FloodSeeds& seeds, const FloodSettings& settings) {
-  float farthest = 1.0f;
-  for (const FloodSeed& seed : seeds.seeds) farthest = std::max(farthest, seed.reachPx);
-  return static_cast<int>(
-      std::bit_floor(static_cast<unsigned>(std::min(farthest, static_cast<float>(settings.firstStep)))));
-}
-
-std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, int firstStep, const FloodSettings& settings,
-                                    const ThreadPool& pool) {
-  FloodLayers none;
-  none.fill(kNone);
-  std::vector<FloodLayers> from(seeds.at.size(), none), to(seeds.at.size());
-  for (std::size_t i = 0; i < seeds.at.size(); ++i) from[i][0] = seeds.at[i];
-  const std::vector<SeedPlace> places = placesOf(seeds, settings);
-  for (int step = firstStep; step > 0; step /= 2) {
+std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings& settings, const ThreadPool& pool) {
+  LayerPlanes from = emptyPlanes(seeds, settings.firstStep), to = from;
+  for (int y = 0; y < seeds.height; ++y)
+    std::copy_n(&seeds.at[static_cast<std::size_t>(y) * static_cast<std::size_t>(seeds.width)], seeds.width,
+                &from.planes[0][from.index(0, y)]);
+  const NearbyReaches reaches(seeds, static_cast<float>(2 * settings.firstStep));
+  for (int step = settings.firstStep; step > 0; step /= 2) {
+    const LayerRound round{seeds, settings, from, to, step};
     pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
       for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
-        for (int x = 0; x < seeds.width; ++x) {
-          const auto i =
-              static_cast<std::size_t>(y) * static_cast<std::size_t>(seeds.width) + static_cast<std::size_t>(x);
-          to[i] = from[i];
-          LayerList list(seeds, places, settings, x, y, to[i]);
-          forEachJump(x, y, step, seeds.width, seeds.height, [&](std::size_t jump) {
-            for (const std::uint32_t candidate : from[jump]) {
-              if (candidate == kNone) break;
-              list.consider(candidate);
-            }
-          });
+        for (int x = 0; x < seeds.width; x += kFloodTile) {
+          if (step == 1 || static_cast<float>(step) <= reaches.at(x, y)) {
+            searchLayers(round, x, y);
+            continue;
+          }
+          for (int k = 0; k < kFloodLayers; ++k)
+            std::copy_n(&from.planes[k][from.index(x, y)], std::min(kFloodTile, seeds.width - x),
+                        &to.planes[k][to.index(x, y)]);
         }
     });
-    from.swap(to);
+    std::swap(from, to);
   }
-  return from;
+  std::vector<FloodLayers> layers(seeds.at.size());
+  const auto width = static_cast<std::size_t>(seeds.width);
+  pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      const std::size_t start = from.index(0, static_cast<int>(y));
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t k = 0; k < kFloodLayers; ++k) layers[y * width + x][k] = from.planes[k][start + x];
+    }
+  });
+  return layers;
 }
 
 std::vector<FloodNeighbours> findNeighbours(const FloodSeeds& seeds, const std::vector<FloodLayers>& layers,
-                                            int firstStep, const FloodSettings& settings, const ThreadPool& pool) {
+                                            const FloodSettings& settings, const ThreadPool& pool) {
   FloodNeighbours none;
-  none.fill(kNone);
-  std::vector<FloodNeighbours> from(seeds.seeds.size(), none), to(seeds.seeds.size());
-  constexpr std::size_t kSeedsAtOnce = 1024;
-  for (int step = firstStep; step > 0; step /= 2) {
-    pool.parallelFor(seeds.seeds.size(), kSeedsAtOnce, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) {
-        const FloodSeed& seed = seeds.seeds[s];
-        to[s] = from[s];
-        if (static_cast<float>(step) > seed.reachPx) continue;
-        NeighbourList list(seeds, settings, static_cast<std::uint32_t>(s), to[s]);
-        forEachJump(seed.x, seed.y, step, seeds.width, seeds.height, [&](std::size_t jump) {
-          for (const std::uint32_t candidate : layers[jump]) {
-            if (candidate == kNone) break;
-            list.consider(candidate);
-          }
-          if (seeds.at[jump] == kNone) return;
-          for (const std::uint32_t candidate : from[seeds.at[jump]])
-            if (candidate != kNone && candidate != s) list.consider(candidate);
-        });
-      }
+  none.fill(kNoPixel);
+  std::vector<FloodNeighbours> from(seeds.at.size(), none), to(seeds.at.size());
+  const float least = leastShare(seeds);
+  const auto width = static_cast<std::size_t>(seeds.width);
+  for (int step = settings.firstStep; step > 0; step /= 2) {
+    forEachSeed(seeds, pool, [&](FloodPixel seed, std::size_t i) {
+      to[i] = from[i];
+      if (static_cast<float>(step) > seeds.reachPx(i)) return;
+      Candidates candidates;
+      const int x = pixelColumn(seed) / 2, y = pixelRow(seed) / 2;
+      for (int v = y - step; v <= y + step; v += step)
+        for (int u = x - step; u <= x + step; u += step) {
+          if (v < 0 || v >= seeds.height || u < 0 || u >= seeds.width || (u == x && v == y)) continue;
+          const std::size_t jump = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+          candidates.add(layers[jump]);
+          if (seeds.at[jump] != kNoPixel) candidates.add(from[jump]);
+        }
+      NeighbourList(seeds, settings, least, seed, to[i]).consider(candidates);
     });
     from.swap(to);
   }
   // Not in the paper: what the jumps missed is mostly among the neighbours' neighbours.
-  pool.parallelFor(seeds.seeds.size(), kSeedsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      to[s] = from[s];
-      NeighbourList list(seeds, settings, static_cast<std::uint32_t>(s), to[s]);
-      for (const std::uint32_t neighbour : from[s])
-        if (neighbour != kNone)
-          for (const std::uint32_t candidate : from[neighbour])
-            if (candidate != kNone && candidate != s) list.consider(candidate);
-    }
+  forEachSeed(seeds, pool, [&](FloodPixel seed, std::size_t i) {
+    to[i] = from[i];
+    Candidates candidates;
+    for (const FloodPixel neighbour : from[i])
+      if (neighbour != kNoPixel) candidates.add(from[seeds.index(neighbour)]);
+    NeighbourList(seeds, settings, least, seed, to[i]).consider(candidates);
   });
   return to;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/point_colour.h"
 #include "render/point_place.h"
 
 namespace strata {
@@ -20,55 +19,16 @@ glm::vec3 unpackNormal(std::uint32_t packed) {
   return length > 0.0f ? normal / length : glm::vec3(0.0f);
 }
 
-/// Turns points of a frame into seeds.
-class SeedMaker {
- public:
-  SeedMaker(const RenderList& list, const View& view, const FloodSettings& settings)
-      : finder_(list), settings_(settings), eye_(view.eye) {
-    const ViewBasis basis = viewBasis(view);
-    toCamera_ = glm::transpose(glm::dmat3(basis.right, basis.up, basis.forward));
-    perspective_ = !view.orthographic;
-    halfPixels_ = static_cast<float>(pixelsAt(view, 1.0, 1.0) / 2.0);
-    for (const RenderItem& item : list.items) spacings_.push_back(drawnSpacing(*item.node, item.pointCount));
-  }
-
-  FloodSeed make(std::uint32_t id) const {
-    const PointPlace place = finder_.find(id);
-    const NodeData& node = *place.node;
-    const auto loaded = static_cast<Precision>(node.loadedPlanes());
-    FloodSeed seed{};
-    seed.position =
-        glm::vec3(toCamera_ * (pointPosition(node, batchOf(node, place.index), place.index, loaded) - eye_));
-    seed.spacing = spacings_[place.item];
-    seed.reach = settings_.reachMetres > 0.0f ? settings_.reachMetres : settings_.reachSpacings * seed.spacing;
-    seed.reachPx = seed.reach * halfPixels_ / (perspective_ ? seed.position.z : 1.0f);
-    if (settings_.useNormals && !node.normal.empty()) {
-      const glm::vec3 normal(toCamera_ * glm::dvec3(unpackNormal(node.normal[place.index])));
-      const glm::vec3 towards = perspective_ ? -seed.position : glm::vec3(0.0f, 0.0f, -1.0f);
-      seed.normal = glm::dot(normal, towards) < 0.0f ? -normal : normal;
-    }
-    return seed;
-  }
-
- private:
-  PointFinder finder_;
-  const FloodSettings& settings_;
-  glm::dvec3 eye_;
-  glm::dmat3 toCamera_;
-  bool perspective_ = true;
-  float halfPixels_ = 0.0f;      ///< pixels of the half picture that a metre covers, at depth 1
-  std::vector<float> spacings_;  ///< of the list's items
-};
-
-/// The pixel of the nearest point in columns 2x, 2x + 1 of rows 2y, 2y + 1.
-std::uint32_t nearestOfFour(const Frame& frame, int x, int y) {
-  std::uint32_t nearest = FloodSeeds::kNone;
+/// The pixel of the nearest point in columns 2x, 2x + 1 of rows 2y, 2y + 1; of equal ones the first.
+FloodPixel nearestOfFour(const Frame& frame, int x, int y) {
+  FloodPixel nearest = kNoPixel;
+  float depth = 0.0f;
   for (int v = 2 * y; v < std::min(2 * y + 2, frame.height); ++v)
     for (int u = 2 * x; u < std::min(2 * x + 2, frame.width); ++u) {
       const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(u);
-      if (frame.pointId[i] == Frame::kNoPoint) continue;
-      if (nearest == FloodSeeds::kNone || frame.depth[i] < frame.depth[nearest])
-        nearest = static_cast<std::uint32_t>(i);
+      if (frame.pointId[i] == Frame::kNoPoint || (nearest != kNoPixel && !(frame.depth[i] < depth))) continue;
+      nearest = floodPixel(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
+      depth = frame.depth[i];
     }
   return nearest;
 }
@@ -81,6 +41,25 @@ FloodSettings faithfulFlood(float scale, float share) {
   settings.continuity = 0.05f / share;
   settings.sectors = settings.estimateNormals = settings.ellipses = settings.keepFront = false;
   return settings;
+}
+
+std::uint32_t packFloodNormal(const glm::vec3& normal) {
+  if (normal == glm::vec3(0.0f)) return 0;
+  const glm::uvec3 parts(normal * 511.0f + 512.5f);
+  return parts.x | parts.y << 10 | parts.z << 20;
+}
+
+glm::vec3 unpackFloodNormal(std::uint32_t packed) {
+  if (packed == 0) return glm::vec3(0.0f);
+  return (glm::vec3(packed & 1023u, packed >> 10 & 1023u, packed >> 20) - 512.0f) / 511.0f;
+}
+
+FloodLens floodLens(const View& view) {
+  View whole = wholePicture(view);
+  whole.nearPlane = 0.0;  // which would bound the depth below
+  return {!view.orthographic, static_cast<float>(1.0 / pixelsAt(whole, 1.0, 1.0)),
+          0.5f * static_cast<float>(whole.width) - static_cast<float>(view.part.left),
+          0.5f * static_cast<float>(whole.height) - static_cast<float>(view.part.top)};
 }
 
 float drawnSpacing(const NodeData& node, std::uint32_t drawn) {
@@ -99,30 +78,47 @@ float drawnSpacing(const NodeData& node, std::uint32_t drawn) {
   return spacing * std::sqrt(count / static_cast<float>(std::clamp(drawn, 1u, std::max(node.pointCount(), 1u))));
 }
 
+std::vector<float> floodReaches(const RenderList& list, const FloodSettings& settings) {
+  std::vector<float> reaches;
+  for (const RenderItem& item : list.items)
+    reaches.push_back(settings.reachMetres > 0.0f ? settings.reachMetres
+                                                  : settings.reachSpacings * drawnSpacing(*item.node, item.pointCount));
+  return reaches;
+}
+
 FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Frame& frame,
                         const ThreadPool& pool) {
   FloodSeeds out;
+  out.lens = floodLens(view);
+  if (frame.width > kFloodLargestSide || frame.height > kFloodLargestSide) return out;
   out.width = (frame.width + 1) / 2;
   out.height = (frame.height + 1) / 2;
   const auto width = static_cast<std::size_t>(out.width), height = static_cast<std::size_t>(out.height);
-  out.at.assign(width * height, FloodSeeds::kNone);
-  std::vector<std::uint32_t> found(out.at.size());
-  pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin * width; i < end * width; ++i)
-      found[i] = nearestOfFour(frame, static_cast<int>(i % width), static_cast<int>(i / width));
-  });
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < found.size(); ++i)
-    if (found[i] != FloodSeeds::kNone) out.at[i] = count++;
-  out.seeds.resize(count);
-  const SeedMaker maker(list, view, settings);
+  const bool normals =
+      settings.useNormals && std::any_of(list.items.begin(), list.items.end(),
+                                         [](const RenderItem& item) { return !item.node->normal.empty(); });
+  out.at.resize(width * height);
+  out.place.resize(width * height);
+  if (normals) out.normal.assign(width * height, 0);
+  const PointFinder finder(list);
+  const std::vector<float> reaches = floodReaches(list, settings);
+  const ViewBasis basis = viewBasis(view);
+  const glm::mat3 toCamera(glm::transpose(glm::dmat3(basis.right, basis.up, basis.forward)));
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * width; i < end * width; ++i) {
-      if (out.at[i] == FloodSeeds::kNone) continue;
-      FloodSeed& seed = out.seeds[out.at[i]] = maker.make(frame.pointId[found[i]]);
-      seed.from = found[i];
-      seed.x = static_cast<std::uint16_t>(i % width);
-      seed.y = static_cast<std::uint16_t>(i / width);
+      const FloodPixel seed = nearestOfFour(frame, static_cast<int>(i % width), static_cast<int>(i / width));
+      out.at[i] = seed;
+      out.place[i] = {};
+      if (seed == kNoPixel) continue;
+      const std::size_t pixel = static_cast<std::size_t>(pixelRow(seed)) * static_cast<std::size_t>(frame.width) +
+                                static_cast<std::size_t>(pixelColumn(seed));
+      const PointPlace place = finder.find(frame.pointId[pixel]);
+      out.place[i] = {frame.depth[pixel], reaches[place.item]};
+      if (!normals || place.node->normal.empty()) continue;
+      const glm::vec3 normal = toCamera * unpackNormal(place.node->normal[place.index]);
+      const glm::vec3 away =
+          out.lens.perspective ? out.lens.position(seed, frame.depth[pixel]) : glm::vec3(0.0f, 0.0f, 1.0f);
+      out.normal[i] = packFloodNormal(glm::dot(normal, away) > 0.0f ? -normal : normal);
     }
   });
   return out;

@@ -28,24 +28,53 @@ struct FloodSettings {
 /// points are dense to 0.1 where they are sparse), continuity 0.05 of it, circles around the 4 closest neighbours.
 FloodSettings faithfulFlood(float scale, float share);
 
-/// A point that a pixel of half the picture's resolution shows.
-struct FloodSeed {
-  glm::vec3 position;  ///< metres from the eye: to the right, up, ahead
-  float reach;         ///< metres; largest distance of a neighbour
-  glm::vec3 normal;    ///< in the same frame, towards the eye; 0 where there is none
-  std::uint32_t from;  ///< pixel of the whole picture that it was found in
-  float reachPx;       ///< the same in pixels of the half picture
-  std::uint16_t x, y;  ///< pixel of the half picture
-  float spacing;       ///< metres
+/// A pixel of the whole picture as x | y << 16: what seeds are called by. Smaller is higher up, then farther left.
+using FloodPixel = std::uint32_t;
+inline constexpr FloodPixel kNoPixel = 0xffffffffu;
+inline constexpr int kFloodLargestSide = 0x7ffe;  ///< pixels; larger pictures stay as they are
+constexpr FloodPixel floodPixel(std::uint32_t x, std::uint32_t y) { return y << 16 | x; }
+constexpr int pixelColumn(FloodPixel pixel) { return static_cast<int>(pixel & 0xffffu); }
+constexpr int pixelRow(FloodPixel pixel) { return static_cast<int>(pixel >> 16); }
+
+/// From pixels of the whole picture and depths to metres from the eye: to the right, up, ahead.
+struct FloodLens {
+  bool perspective = true;
+  float perPixel = 1.0f;  ///< metres, at depth 1 or at any
+  float middleX = 0.0f, middleY = 0.0f;
+
+  float metres(float depth) const { return perPixel * (perspective ? depth : 1.0f); }  ///< that a pixel covers
+  glm::vec3 position(FloodPixel pixel, float depth) const {
+    const float size = metres(depth);
+    return {(static_cast<float>(pixelColumn(pixel)) + 0.5f - middleX) * size,
+            (middleY - static_cast<float>(pixelRow(pixel)) - 0.5f) * size, depth};
+  }
+};
+FloodLens floodLens(const View& view);
+
+/// What of the point that a pixel of the half picture shows.
+struct FloodPlace {
+  float depth;
+  float reach;  ///< metres; largest distance of a neighbour
 };
 
-/// The first of the four steps (Farias 2014, 4.1): the nearest point of each 2 x 2 pixels.
-struct FloodSeeds {
-  static constexpr std::uint32_t kNone = 0xffffffffu;
+/// A unit vector as x | y << 10 | z << 20, each 512 + 511 times the coordinate; 0 for the zero vector. And back.
+std::uint32_t packFloodNormal(const glm::vec3& normal);
+glm::vec3 unpackFloodNormal(std::uint32_t packed);
 
-  int width = 0, height = 0;
-  std::vector<FloodSeed> seeds;   ///< row by row
-  std::vector<std::uint32_t> at;  ///< for each pixel the index of its seed, or kNone
+/// The first of the four steps (Farias 2014, 4.1): the nearest point of each 2 x 2 pixels, in the middle of its pixel.
+struct FloodSeeds {
+  int width = 0, height = 0;          ///< of the half picture
+  FloodLens lens;                     ///< of the whole one
+  std::vector<FloodPixel> at;         ///< for each pixel of the half picture where its seed is; kNoPixel: it has none
+  std::vector<FloodPlace> place;      ///< by index()
+  std::vector<std::uint32_t> normal;  ///< likewise, see packFloodNormal(), as positions are; 0: not known. Or empty
+
+  std::size_t index(FloodPixel seed) const {
+    return static_cast<std::size_t>(seed >> 17) * static_cast<std::size_t>(width) + ((seed & 0xffffu) >> 1);
+  }
+  glm::vec3 position(FloodPixel seed) const { return lens.position(seed, place[index(seed)].depth); }
+  /// Largest distance of a neighbour, in pixels of the half picture.
+  float reachPx(std::size_t i) const { return 0.5f * place[i].reach / lens.metres(place[i].depth); }
 };
 
 /// `frame` was drawn from the list, seen by `view`.
@@ -55,5 +84,8 @@ FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSet
 /// Metres between the first `drawn` points of a node: its own spacing, or that of points spread evenly over the two
 /// longer sides of its box where it is not known; more where not all are drawn.
 float drawnSpacing(const NodeData& node, std::uint32_t drawn);
+
+/// For each item of the list the largest distance of a neighbour of its points.
+std::vector<float> floodReaches(const RenderList& list, const FloodSettings& settings);
 
 }  // namespace strata

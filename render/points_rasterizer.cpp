@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "render/gl_flood.h"
 #include "render/gl_scene.h"
 #include "render/resolve.h"
 #include "render/stopwatch.h"
@@ -114,7 +115,7 @@ class PointsRasterizer final : public Rasterizer {
     buffer_.counts.assign(counts ? buffer_.pixels.size() : 0, 0);
     if (!buffer_.pixels.empty()) drawPoints(counts, stats);
     stats.drawMs = watch.lapMs();
-    resolveFrame(list, view, options, buffer_, pool_, frame);
+    resolveFrame(list, view, options, buffer_, pool_, frame, &flood_);
     stats.resolveMs = watch.lapMs();
     return stats;
   }
@@ -225,6 +226,7 @@ class PointsRasterizer final : public Rasterizer {
   ProgramCache programs_, counting_;
   GlBuffer counts_, commands_, recordNumbers_;
   PointTarget target_;
+  GlFlood flood_{scene_.gl(), scene_.groupSize()};
   GlTimestamp begin_, end_;
   unsigned vertexArray_ = 0;
   bool warned_ = false;

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "render/gl_flood.h"
 #include "render/gl_scene.h"
 #include "render/resolve.h"
 #include "render/stopwatch.h"
@@ -124,7 +125,7 @@ class Progressive final : public ProgressiveRasterizer {
     stats.drawMs = watch.lapMs();
     stats.pointsPending = pixels_ > 0 ? points_.turn().pending() : 0;
     stats.gpuBytes = points_.gpuBytes() + 2 * kept_[0].bytes() + candidates_.bytes();
-    resolveFrame(list, view, options, buffer_, threads_, frame);
+    resolveFrame(list, view, options, buffer_, threads_, frame, &flood_);
     stats.resolveMs = watch.lapMs();
     report(stats, shown);
     return stats;
@@ -322,6 +323,7 @@ class Progressive final : public ProgressiveRasterizer {
   const std::uint32_t groupSize_;
   std::array<ProgramCache, 2 * kPasses> passes_;  ///< for any grids, then for one
   PointPool points_;
+  GlFlood flood_{gl_, groupSize_};
   GlBuffer gridBuffer_, depths_, ids_, candidates_;
   std::array<GlBuffer, 2> kept_;  ///< the points that the pixels show: of the last frame, of this one
   std::array<GlTimestamp, 6> stamps_;

@@ -6,6 +6,7 @@
 #include "render/batch_plan.h"
 #include "render/colour_map.h"
 #include "render/flood_fill.h"
+#include "render/gl_flood.h"
 #include "render/point_colour.h"
 #include "render/point_place.h"
 #include "render/post_process.h"
@@ -157,7 +158,7 @@ void takeLargePoints(const VisibilityBuffer& buffer, const ThreadPool& pool, Fra
 }  // namespace
 
 void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
-                  const ThreadPool& pool, Frame& frame) {
+                  const ThreadPool& pool, Frame& frame, GlFlood* flood) {
   const std::size_t count = buffer.pixels.size();
   const auto width = static_cast<std::size_t>(buffer.width);
   const auto height = static_cast<std::size_t>(std::max(buffer.height, 0));
@@ -191,7 +192,10 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
     });
   }
   if (options.jumpFlood) {
-    floodFill(list, view, {}, pool, frame);
+    if (flood != nullptr)
+      flood->fill(list, view, {}, pool, frame);
+    else
+      floodFill(list, view, {}, pool, frame);
     dilate(buffer, sizes, pool);
     if (!sizes.alwaysOne()) takeLargePoints(buffer, pool, frame);
   }

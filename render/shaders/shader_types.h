@@ -41,6 +41,21 @@ using uvec4 = glm::uvec4;
 #define STRATA_BINDING_STAGED 5       // PoolPoint, one after the other; or those of the pixels
 #define STRATA_BINDING_INSERTS 6      // PoolInsert; or PoolPiece
 
+// Storage blocks of filling holes
+#define STRATA_BINDING_FLOOD_PARAMS 0      // FloodParams
+#define STRATA_BINDING_FLOOD_SEEDS 1       // FloodSeed, one for each pixel of the half picture
+#define STRATA_BINDING_FLOOD_FROM 2        // what a round reads: layers or neighbours; splats
+#define STRATA_BINDING_FLOOD_TO 3          // what it writes
+#define STRATA_BINDING_FLOOD_LAYERS 4      // uvec4, one for each pixel of the half picture
+#define STRATA_BINDING_FLOOD_REACHES 4     // per tile: bits of the largest reach in it, then of that nearby
+#define STRATA_BINDING_FLOOD_ITEMS 5       // FloodItem
+#define STRATA_BINDING_FLOOD_NORMALS 2     // projecting: packed normals of the half picture
+#define STRATA_BINDING_FLOOD_IDS 6         // of the picture
+#define STRATA_BINDING_FLOOD_DEPTHS 7      // likewise
+#define STRATA_BINDING_FLOOD_LIMITS 3      // drawing: per pixel bits of the depth up to which splats count
+#define STRATA_BINDING_FLOOD_COLOURS 4     // drawing: of the picture
+#define STRATA_BINDING_FLOOD_SUMS 5        // drawing: FloodSum
+
 #define STRATA_UNIFORM_VIEWPORT 0       // per view: half the picture's width and height, width and height of the image
 #define STRATA_UNIFORM_LENS 4           // per view: near plane, 1 for perspective or 0, corner of the image in the picture
 #define STRATA_UNIFORM_PIXELS 8         // per view: first pixel in the buffers, first row and end row that they hold
@@ -117,6 +132,58 @@ struct PoolInsert {
   uint padding;
 };
 
+#define STRATA_FLOOD_TILE 16  // side of the squares that know how far a reach nearby goes, pixels of the half picture
+#define STRATA_FLOOD_WEIGHT 1023.0     // what the weight 1 is in a FloodSum
+#define STRATA_FLOOD_DEPTHS 16384.0    // steps of depth in a FloodSum, from the limit to the eye
+
+// Flags of FloodParams
+#define STRATA_FLOOD_PERSPECTIVE 1
+#define STRATA_FLOOD_SECTORS 2
+#define STRATA_FLOOD_ESTIMATE 4
+#define STRATA_FLOOD_ELLIPSES 8
+#define STRATA_FLOOD_KEEP_FRONT 16
+#define STRATA_FLOOD_NORMALS 32
+
+/// FloodSettings, FloodLens and sizes.
+struct FloodParams {
+  int width, height;          // of the picture
+  int halfWidth, halfHeight;
+  int tileColumns, tileRows;
+  uint flags, items;
+  float perPixel, middleX, middleY, farthestReach;  // the last one in pixels of the half picture
+  float angle, continuity, relativeRadius, mostReaches;  // the last one: largest radius of next pixels, in reaches
+  uint indexBits, padding[3];  // that an index into the half picture has
+};
+
+/// One item of the list.
+struct FloodItem {
+  uint firstId;
+  float reach;
+};
+
+/// FloodSeeds of one pixel of the half picture.
+struct FloodSeed {
+  uint pixel;
+  float depth, reach;
+  uint normal;
+};
+
+/// FloodSplat as drawn; radius 0: there is none.
+struct FloodShape {
+  float x, y, tiltX, tiltY;
+  float acrossX, acrossY, alongX, alongY;
+  float centreDepth, slopeX, slopeY, radius;
+  uint columns, rows;  // first | last << 16
+  uint open, colour;
+};
+
+/// What the splats give one pixel.
+struct FloodSum {
+  uint red, green, blue, weight;
+  uint depth;     // before the limit
+  uint heaviest;  // weight << indexBits | that many ones less the splat's index
+};
+
 /// Written by the shaders, cleared before each frame.
 struct Counters {
   uint pointsDrawn;
@@ -171,6 +238,8 @@ struct DispatchRecord {
 static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchPlace) == 32 && sizeof(GridRecord) == 240);
 static_assert(sizeof(BatchBox) == 4 * STRATA_BOX_WORDS && sizeof(DrawPart) == 192 && sizeof(ViewRecord) == 640);
 static_assert(sizeof(PoolPiece) == 32 && sizeof(PoolInsert) == 16);
+static_assert(sizeof(FloodParams) == 80 && sizeof(FloodItem) == 8 && sizeof(FloodSeed) == 16 && sizeof(FloodShape) == 64);
+static_assert(sizeof(FloodSum) == 24);
 static_assert(sizeof(DispatchRecord) == 12 && sizeof(Counters) == 32);
 }  // namespace strata::shader
 #endif

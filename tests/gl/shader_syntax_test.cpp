@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "render/gl_flood.h"
 #include "render/gl_objects.h"
 #include "render/shader_variant.h"
 #include "tests/support/test_data.h"
@@ -65,6 +66,13 @@ TEST_F(ShaderSyntax, OfProgressiveDrawingIsSound) {
     for (const std::string_view file : {"pool_insert.comp", "pool_fetch.comp"})
       EXPECT_EQ(errorsOf("comp", 430, defines, {"shader_types.h", "pool.glsl", file}), "");
   });
+}
+
+TEST_F(ShaderSyntax, OfFillingHolesIsSound) {
+  for (const std::string_view file :
+       {"flood_project.comp", "flood_spread.comp", "flood_layers.comp", "flood_neighbours.comp", "flood_splats.comp",
+        "flood_draw.comp", "flood_finish.comp"})
+    EXPECT_EQ(errorsOf("comp", 430, floodDefines(64), {"shader_types.h", "flood.glsl", file}), "");
 }
 
 TEST_F(ShaderSyntax, OfCompute64IsSoundByEitherNameOfItsAtomics) {
