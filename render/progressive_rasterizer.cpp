@@ -296,6 +296,7 @@ class Progressive final : public ProgressiveRasterizer {
 
   void report(const DrawStats& stats, const PoolFrame& shown) {
     stats_.written = shown.pointsWritten;
+    stats_.gpuBytes = stats.gpuBytes;
     stats_.turnPlaces = points_.turn().places();
     stats_.uploadMs = stats.uploadMs;
     stats_.resolveMs = stats.resolveMs;

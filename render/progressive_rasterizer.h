@@ -18,6 +18,7 @@ struct ProgressiveOptions {
 /// What the last frame did, for panels and measurements.
 struct ProgressiveStats {
   std::uint64_t poolPoints = 0, poolFree = 0;  ///< places, those that nobody has
+  std::uint64_t gpuBytes = 0;                  ///< of the pool, the pixels and what goes with them
   std::uint32_t pieces = 0, ghostPieces = 0;   ///< in the pool; freed, and not removed everywhere yet
   std::uint64_t shownPoints = 0;               ///< of the pieces that the frame may show
   std::uint32_t leastImportance = 0, mostImportance = 0;

@@ -177,8 +177,8 @@ void fillTable(const Scale& scale, const Scene& scene) {
   }
 }
 
-/// Table 4.3: half of the points, in a pool that holds nothing else, then between the other half, which was seen
-/// before.
+/// Table 4.3: half of the points, in a pool that holds nothing else; with the other half, seen after it; and seen with
+/// it.
 void halfFullTable(const Scale& scale, const Scene& scene) {
   RenderList half;
   for (std::size_t i = 0; i < scene.list.items.size(); i += 2) {
@@ -186,16 +186,19 @@ void halfFullTable(const Scale& scale, const Scene& scene) {
     half.pointCount += scene.list.items[i].pointCount;
   }
   const std::uint64_t pool = scene.list.pointCount * 11 / 10;
-  const auto rasterizer = progressive(pool, pool);
   std::printf("\nA whole turn in one frame (Table 4.3), pool of %.1f M places, %.1f M points shown:\n\n",
               millions(pool), millions(half.pointCount));
-  std::printf("| pool | turn | fill, ms | frame, ms |\n|---|---|---|---|\n");
-  for (const RenderList* before : std::initializer_list<const RenderList*>{&half, &scene.list}) {
-    fillPool(*rasterizer, *before, scene.view);
+  std::printf("| the other half | pool | turn | fill, ms | frame, ms |\n|---|---|---|---|---|\n");
+  const std::pair<const char*, std::vector<const RenderList*>> ways[] = {
+      {"never seen", {&half}}, {"seen after it", {&half, &scene.list}}, {"seen with it", {&scene.list}}};
+  for (const auto& [name, lists] : ways) {
+    const auto rasterizer = progressive(pool, pool);
+    for (const RenderList* before : lists) fillPool(*rasterizer, *before, scene.view);
     const ProgressiveStats& stats = rasterizer->progress();
     const double taken = 100.0 * (1.0 - static_cast<double>(stats.poolFree) / static_cast<double>(stats.poolPoints));
     const Times t = timeFrames(*rasterizer, half, scene.view, scale.frames);
-    std::printf("| %.0f %% full | %.1f M | %.1f | %.1f |\n", taken, millions(stats.turnPlaces), t.fill, t.frame);
+    std::printf("| %s | %.0f %% full | %.1f M | %.1f | %.1f |\n", name, taken, millions(stats.turnPlaces), t.fill,
+                t.frame);
     std::fflush(stdout);
   }
 }

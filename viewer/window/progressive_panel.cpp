@@ -2,6 +2,7 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "viewer/bench/html_text.h"
@@ -47,14 +48,18 @@ bool drawProgressivePanel(ProgressiveRasterizer& rasterizer) {
     ImGui::Separator();
     const auto used = static_cast<float>(stats.poolPoints - stats.poolFree) / static_cast<float>(stats.poolPoints);
     ImGui::ProgressBar(used, ImVec2(-1.0f, 0.0f));
-    line("pool", count(stats.poolPoints) + " points");
+    line("pool", count(stats.poolPoints) + ", " + readableBytes(static_cast<double>(stats.gpuBytes)));
     line("shown of it", count(stats.shownPoints));
+    const std::uint64_t n = std::max<std::uint64_t>(options.pointsPerFrame, 1);
+    line("turn", count(stats.turnPlaces) + ", " + std::to_string((stats.turnPlaces + n - 1) / n) + " frames");
     line("pieces", count(stats.pieces) + ", " + count(stats.ghostPieces) + " freed");
     line("importance", std::to_string(stats.leastImportance) + " to " + std::to_string(stats.mostImportance));
     line("reprojected", count(stats.reprojected) + " points");
     line("filled", count(stats.filled) + " places");
     line("written", count(stats.written) + " points");
     ImGui::Separator();
+    line("all of a frame", readableMs(stats.uploadMs + stats.clearMs + stats.reprojectMs + stats.fillMs +
+                                      stats.indexMs + stats.keepMs + stats.readMs + stats.resolveMs));
     line("upload", readableMs(stats.uploadMs));
     line("clear", readableMs(stats.clearMs));
     line("reproject", readableMs(stats.reprojectMs));
