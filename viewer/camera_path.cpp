@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
@@ -15,7 +16,8 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kLengthSamples = 256;  // between two keys, when the speed is constant
 constexpr double kMaxFps = 1000.0;
-constexpr double kMaxFrames = 1e6;  // keeps a mistyped time from running for weeks
+constexpr std::size_t kMaxBytes = 200'000'000;  // 200 a frame of the longest path
+constexpr double kMaxFrames = 1e6;              // keeps a mistyped time from running for weeks
 
 using Json = nlohmann::json;
 
@@ -92,6 +94,22 @@ bool flagOf(const std::string& file, const Json& key, std::size_t index, const c
   if (!found->is_boolean())
     refuseKey(file, index, std::string(name) + ", found " + found->dump() + " (expected true or false)");
   return found->get<bool>();
+}
+
+std::string countText(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+Json parsed(const std::string& file, const std::string& text) {
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw Error(file, "is no JSON, at byte " + std::to_string(error.byte));
+  } catch (const Json::out_of_range&) {
+    throw Error(file, "holds a number too large for a double");
+  }
 }
 
 CameraKey parseKey(const std::string& file, const Json& json, std::size_t index) {
@@ -220,8 +238,7 @@ std::string cameraPathJson(const CameraPath& path) {
 }
 
 CameraPath parseCameraPath(const std::string& file, const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw Error(file, "is no JSON");
+  const Json json = parsed(file, text);
   if (!json.is_object()) throw Error(file, "is no camera path, found JSON of type " + std::string(json.type_name()));
   CameraPath path;
   if (json.contains("fps")) path.fps = numberOf(file, json["fps"], "fps");
@@ -244,10 +261,10 @@ CameraPath parseCameraPath(const std::string& file, const std::string& text) {
       refuseKey(file, i, "t " + Json(path.keys[i].t).dump() + " is not after " + Json(path.keys[i - 1].t).dump());
   }
   if (!(path.duration() * path.fps < kMaxFrames))
-    throw Error(file, "too long, found " + Json(path.duration() * path.fps).dump() + " frames (expected under 1e6)");
+    throw Error(file, "too long, found " + countText(path.duration() * path.fps) + " frames (expected under 1e6)");
   return path;
 }
 
-CameraPath readCameraPath(const std::string& file) { return parseCameraPath(file, readText(file)); }
+CameraPath readCameraPath(const std::string& file) { return parseCameraPath(file, readText(file, kMaxBytes)); }
 
 }  // namespace strata

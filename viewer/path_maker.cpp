@@ -14,7 +14,9 @@ namespace {
 constexpr double kTau = 2.0 * std::numbers::pi;
 constexpr double kOrbitElevation = std::numbers::pi / 6.0;
 constexpr double kOrbitFovY = std::numbers::pi / 4.0;
-constexpr double kSeconds = 12.0;  // of every path
+constexpr double kSeconds = 12.0;      // of every path
+constexpr double kOnePlace = 1e-9;     // of the coordinates: nearer than this is the same place
+constexpr double kBesideAPoint = 1.0;  // metres
 constexpr int kOrbitKeys = 16;
 constexpr int kFlightKeys = 9;
 constexpr double kWalkerHeight = 1.7;  // metres, or a share of the scene where that is small
@@ -107,6 +109,8 @@ CameraPath orbitPath(const Scene& scene) {
     views.push_back(fittedView(scene, direction, kPictureWidth, kPictureHeight, path.fovY));
     farthest = std::max(farthest, glm::dot(centre - views.back().eye, direction));
   }
+  // A scan in one place is looked at from beside it.
+  if (!(farthest > kOnePlace * std::max(1.0, glm::length(centre)))) farthest = kBesideAPoint;
   // All from the same distance, so that the orbit does not breathe; stepping back loses nothing out of the picture.
   for (int i = 0; i <= kOrbitKeys; ++i) {
     const View& view = views[static_cast<std::size_t>(i % kOrbitKeys)];

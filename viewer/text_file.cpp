@@ -6,19 +6,27 @@
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
 #include "core/error.h"
 
 namespace strata {
 
-std::string readText(const std::string& path) {
+std::string readText(const std::string& path, std::size_t mostBytes) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw posixError(path, "opening", EISDIR);
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw posixError(path, "opening", errno != 0 ? errno : EIO);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text;
+  constexpr std::size_t kStep = std::size_t{1} << 16;
+  while (file && text.size() <= mostBytes) {
+    const std::size_t before = text.size();
+    text.resize(before + kStep);
+    file.read(text.data() + before, static_cast<std::streamsize>(kStep));
+    text.resize(before + static_cast<std::size_t>(file.gcount()));
+  }
+  if (text.size() > mostBytes)
+    throw Error(path, "is too large to be read here, found more than " + std::to_string(mostBytes) + " bytes");
   if (file.bad()) throw Error(path, "cannot be read as a file");
   return text;
 }

@@ -158,6 +158,18 @@ TEST(PathMaker, OrbitShowsNearlyAllOfTheScanAllTheWay) {
   }
 }
 
+TEST(PathMaker, PathsOfAScanInOnePlaceCanBeFlown) {
+  for (const glm::dvec3& place : {glm::dvec3(0.0), glm::dvec3(5.0, 5.0, 5.0), glm::dvec3(630000.0, 4850000.0, 100.0)})
+    for (const std::size_t copies : {1u, 1000u}) {
+      const Scene scene = makeScene(std::vector<glm::dvec3>(copies, place));
+      for (const CameraPath& path : {orbitPath(scene), flythroughPath(scene), streetPath(scene)}) {
+        const CameraPath read = parseCameraPath("p", cameraPathJson(path));
+        for (const CameraKey& key : read.keys)
+          EXPECT_LT(glm::distance(key.eye, place), 10.0) << key.eye.x << " " << key.eye.y << " " << key.eye.z;
+      }
+    }
+}
+
 TEST(PathMaker, FlythroughStaysAboveTheRoofsAndSeesTheTown) {
   const Scene scene = town();
   const CameraPath path = flythroughPath(scene);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <numbers>
 #include <random>
 
@@ -119,7 +120,11 @@ TEST(CameraPath, TakesDefaultsForWhatMayBeAbsent) {
 
 TEST(CameraPath, SaysWhatIsWrongAndWhere) {
   const std::string key = R"({"t":2,"eye":[0,0,0],"target":[1,0,0]})";
-  EXPECT_EQ(refusal("{"), "path.json: is no JSON");
+  EXPECT_EQ(refusal("{"), "path.json: is no JSON, at byte 2");
+  EXPECT_EQ(refusal(withKeys(R"({"t":NaN,"eye":[0,0,0],"target":[1,0,0]})")).substr(0, 33),
+            "path.json: is no JSON, at byte 35");
+  EXPECT_EQ(refusal(withKeys(R"({"t":0,"eye":[0,0,1e999],"target":[1,0,0]})")),
+            "path.json: holds a number too large for a double");
   EXPECT_EQ(refusal("[]"), "path.json: is no camera path, found JSON of type array");
   EXPECT_EQ(refusal("{}"), "path.json: keys is missing or empty (expected a list of at least one key)");
   EXPECT_EQ(refusal(withKeys("")), "path.json: keys is missing or empty (expected a list of at least one key)");
@@ -143,6 +148,15 @@ TEST(CameraPath, RefusesATimeThatWouldNeverEnd) {
   EXPECT_NE(refusal(withKeys(R"({"t":0,"eye":[0,0,0],"target":[1,0,0]},{"t":1e300,"eye":[0,0,0],"target":[1,0,0]})"))
                 .find("too long"),
             std::string::npos);
+  EXPECT_NE(
+      refusal(withKeys(R"({"t":-1e308,"eye":[0,0,0],"target":[1,0,0]},{"t":1e308,"eye":[0,0,0],"target":[1,0,0]})"))
+          .find("too long, found inf frames"),
+      std::string::npos);
+}
+
+TEST(CameraPath, RefusesAFileWithoutEnd) {
+  if (!std::filesystem::exists("/dev/zero")) GTEST_SKIP() << "no /dev/zero here";
+  EXPECT_THROW(readCameraPath("/dev/zero"), Error);
 }
 
 TEST(CameraPath, NamesAFileThatIsNotThere) {

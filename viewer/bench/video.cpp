@@ -17,6 +17,7 @@
 namespace strata {
 
 VideoWriter::VideoWriter(const std::string& path, int width, int height, double fps) : path_(path) {
+  const std::string file = "file:" + path_;  // whatever its name looks like
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   char rate[32];
   std::snprintf(rate, sizeof rate, "%g", fps);
@@ -27,7 +28,7 @@ VideoWriter::VideoWriter(const std::string& path, int width, int height, double 
                                      "-i",          "pipe:0",     "-vf",           "pad=ceil(iw/2)*2:ceil(ih/2)*2",
                                      "-c:v",        "libx264",    "-crf",          "18",
                                      "-pix_fmt",    "yuv420p",    "-movflags",     "+faststart",
-                                     path_.c_str(), nullptr};
+                                     file.c_str(),  nullptr};
   // A socket, not a pipe: writing to one whose reader has ended can be an error instead of a signal.
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
