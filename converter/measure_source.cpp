@@ -57,7 +57,8 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
           if (!finite(p)) continue;
           bounds.add(p);
           if (seen++ % sampleEvery == 0) sampleHere.push_back(p);
-          ++exponents[std::ilogb(std::max(glm::compMax(glm::abs(p)), 1e-300))];
+          // The origin lies on every grid; scanners write it for rays that met nothing.
+          if (const double magnitude = glm::compMax(glm::abs(p)); magnitude > 0.0) ++exponents[std::ilogb(magnitude)];
         }
         control.progress({stage::kMeasure, done += block.count(), source.info().pointCount});
       }

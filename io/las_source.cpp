@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "io/las_record.h"
 #include "io/las_vlr.h"
 
@@ -146,6 +147,17 @@ SourceInfo infoOf(const std::string& path, const LasHead& head, std::uint64_t fi
   return info;
 }
 
+/// Says that the file goes on behind the points that its header counts. Waveforms may stand there.
+void warnOfMore(const LasHeader& header, const std::string& path, std::uint64_t points, std::uint64_t fileBytes) {
+  const bool waveforms = header.pointFormat == 4 || header.pointFormat == 5 || header.pointFormat >= 9;
+  const bool evlrs = header.evlrCount > 0 && header.evlrStart >= header.pointsOffset && header.evlrStart <= fileBytes;
+  const std::uint64_t end = evlrs ? header.evlrStart : fileBytes;
+  const std::uint64_t room = (end - header.pointsOffset) / header.recordBytes;
+  if (!waveforms && room > points)
+    logWarning(path + ": the header counts " + std::to_string(points) + " points, found room for " +
+               std::to_string(room - points) + " more behind them, which are not read");
+}
+
 }  // namespace
 
 std::unique_ptr<PointSource> openLas(const std::string& path, const SourceOptions& options) {
@@ -164,6 +176,7 @@ std::unique_ptr<PointSource> openLas(const std::string& path, const SourceOption
     throw Error(path, "the file ends early, found " + std::to_string(whole) + " points (expected " +
                           std::to_string(info.pointCount) + ")");
   const std::uint64_t points = std::min(info.pointCount, whole);
+  warnOfMore(header, path, points, file->size());
   info.uncompressedBytes = points * header.recordBytes;
   return std::make_unique<LasSource>(std::move(file), header, std::move(info), points);
 }

@@ -92,7 +92,8 @@ std::unique_ptr<PointSource> openOne(const std::string& path, const SourceOption
   const ScanFormat* format = findFormat(path);
   if (format == nullptr) {
     if (const UnreadFormat* unread = findUnread(path)) throw Error(path, std::string(unread->message));
-    if (!fs::exists(path)) firstBytes(path);  // says why it cannot be opened
+    std::error_code failure;
+    if (!fs::exists(path, failure)) firstBytes(path);  // says why it cannot be opened
     const std::string extension = extensionOf(path);
     throw Error(path, "unknown kind of scan, found extension '" + extension + "' (expected " +
                           std::string(kKnownExtensions) + ")");

@@ -44,6 +44,11 @@ TEST_F(BadInput, AFolderWithoutScansIsRefused) {
   expectRefusal((folder_ / "papers").string(), "");
 }
 
+TEST_F(BadInput, ALinkToItselfIsRefusedByName) {
+  std::filesystem::create_symlink(folder_ / "loop", folder_ / "loop");
+  expectRefusal((folder_ / "loop").string(), "loop: ");
+}
+
 TEST_F(BadInput, AnEmptyFileIsRefused) {
   for (const char* ending : {"las", "laz", "ply", "pcd", "xyz", "pts", "csv", "txt"})
     expectRefusal(file(std::string("empty.") + ending, ""), "");

@@ -1,5 +1,6 @@
 // Scans that are odd but sound: they convert, and every coordinate comes through.
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "tests/support/programs.h"
@@ -156,6 +157,36 @@ TEST_F(OddInput, NamesWithSpacesAndUmlautsWork) {
   writeLas(name, gridScan(10));
   EXPECT_EQ(mustConvert({name}, folder_ / "Haus Süd (2).strata").at("points"), 100);
   EXPECT_EQ(mustInfo(folder_ / "Haus Süd (2).strata").at("points"), 100);
+}
+
+TEST_F(OddInput, PointsAtTheOriginMakeTheGridNoFiner) {
+  std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 300\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n";
+  for (int i = 0; i < 300; ++i) {
+    const bool met = i % 3 == 0;  // most rays met nothing
+    const float place[3] = {met ? 10.0f + 0.1f * static_cast<float>(i) : 0.0f, met ? 5.0f : 0.0f, met ? -2.5f : 0.0f};
+    ply.append(reinterpret_cast<const char*>(place), sizeof place);
+  }
+  std::ofstream(folder_ / "rays.ply", std::ios::binary) << ply;
+  EXPECT_EQ(mustConvert({(folder_ / "rays.ply").string()}, folder_ / "out.strata").at("points"), 300);
+  const Json bounds = mustInfo(folder_ / "out.strata", true).at("bounds");
+  EXPECT_NEAR(bounds.at("max").at(0).get<double>(), 39.7, 1e-5);
+  EXPECT_NEAR(bounds.at("min").at(2).get<double>(), -2.5, 1e-5);
+}
+
+TEST_F(OddInput, RecordsBehindTheCountedPointsAreWarnedOf) {
+  LasSpec spec = gridScan(10);
+  const std::string input = las(spec);
+  EXPECT_EQ(runProgram("strata-convert", {input, "-o", (folder_ / "all.strata").string()}).err.find("more behind them"),
+            std::string::npos);
+  spec.claimedPoints = 60;
+  const Finished finished = runProgram("strata-convert", {las(spec), "-o", (folder_ / "some.strata").string()});
+  EXPECT_EQ(finished.exitCode, 0);
+  EXPECT_NE(finished.err.find("the header counts 60 points, found room for 40 more behind them, which are not read"),
+            std::string::npos)
+      << finished.err;
+  EXPECT_EQ(mustInfo(folder_ / "some.strata").at("points"), 60);
 }
 
 TEST_F(OddInput, TheSameFileTwiceCountsTwice) {
