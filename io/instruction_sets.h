@@ -5,8 +5,11 @@
 #if defined(__x86_64__)
 /// Shifts by any register, deposits of bits (BMI 2); counts of leading zeros.
 #define STRATA_TARGET_BMI2 __attribute__((target("bmi,bmi2,lzcnt")))
+/// Vectors of 32 bytes (no fused multiply-add: results are those of the plain set).
+#define STRATA_TARGET_AVX2 __attribute__((target("avx2")))
 #else
 #define STRATA_TARGET_BMI2
+#define STRATA_TARGET_AVX2
 #endif
 
 namespace strata {
@@ -16,6 +19,16 @@ inline bool hasBmi2() {
 #if defined(__x86_64__)
   static const bool has =
       __builtin_cpu_supports("bmi2") != 0 && __builtin_cpu_is("znver1") == 0 && __builtin_cpu_is("znver2") == 0;
+  return has;
+#else
+  return false;
+#endif
+}
+
+/// Whether what is compiled for STRATA_TARGET_AVX2 runs here.
+inline bool hasAvx2() {
+#if defined(__x86_64__)
+  static const bool has = __builtin_cpu_supports("avx2") != 0;
   return has;
 #else
   return false;

@@ -3,13 +3,94 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <numbers>
+
+#include "io/instruction_sets.h"
 
 namespace strata {
 namespace {
 
-/// To coordinates from the cell's centre in sides of the cell.
-glm::vec3 placeInCell(const glm::u16vec3& point) { return (glm::vec3(point) + 0.5f) / 1024.0f - 0.5f; }
+/// Sums over points: x y z, xx yy zz xy xz yz.
+using Moments = std::array<std::uint64_t, 9>;
+
+/// A few points at a time, whose sums fit 32 bits.
+inline __attribute__((always_inline)) void addMoments(std::span<const CellPoint> points, Moments& moments) {
+  constexpr std::size_t kAtOnce = 2048;
+  for (; !points.empty(); points = points.subspan(std::min(points.size(), kAtOnce))) {
+    std::uint32_t x = 0, y = 0, z = 0, xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+    for (const CellPoint point : points.first(std::min(points.size(), kAtOnce))) {
+      const std::uint32_t px = point & 1023u, py = point >> 10 & 1023u, pz = point >> 20;
+      x += px, y += py, z += pz;
+      xx += px * px, yy += py * py, zz += pz * pz;
+      xy += px * py, xz += px * pz, yz += py * pz;
+    }
+    const std::uint32_t sums[] = {x, y, z, xx, yy, zz, xy, xz, yz};
+    for (std::size_t k = 0; k < moments.size(); ++k) moments[k] += sums[k];
+  }
+}
+void addMomentsPlain(std::span<const CellPoint> points, Moments& moments) { addMoments(points, moments); }
+STRATA_TARGET_AVX2 void addMomentsAvx2(std::span<const CellPoint> points, Moments& moments) {
+  addMoments(points, moments);
+}
+
+constexpr std::size_t kSquares = std::size_t{kCellGrid} * kCellGrid;
+/// A byte for each square of the finest grid, and one for all points that are in none.
+using SquareBytes = std::array<std::uint8_t, kSquares + 8>;
+
+/// Sets the bytes of squares that have points near the plane.
+inline __attribute__((always_inline)) void markBytes(std::span<const CellPoint> points, float layer,
+                                                     const CellPlane& plane, SquareBytes& bytes) {
+  constexpr int kShift = std::countr_zero(1024u / kCellGrid);
+  const glm::vec3 normal = plane.normal / 1024.0f;
+  const float base = (0.5f - 512.0f) * (normal.x + normal.y + normal.z) - plane.offset;
+  const int u = 10 * static_cast<int>(plane.u) + kShift, v = 10 * static_cast<int>(plane.v) + kShift;
+  constexpr std::size_t kAtOnce = 256;
+  std::array<std::uint32_t, kAtOnce> square;
+  for (; !points.empty(); points = points.subspan(std::min(points.size(), kAtOnce))) {
+    const std::size_t count = std::min(points.size(), kAtOnce);
+    const CellPoint* const from = points.data();
+    for (std::size_t i = 0; i < count; ++i) {
+      const CellPoint p = from[i];
+      const float distance = normal.x * static_cast<float>(static_cast<int>(p & 1023u)) +
+                             normal.y * static_cast<float>(static_cast<int>(p >> 10 & 1023u)) +
+                             normal.z * static_cast<float>(static_cast<int>(p >> 20)) + base;
+      const std::uint32_t at = (p >> v & (kCellGrid - 1)) * kCellGrid + (p >> u & (kCellGrid - 1));
+      square[i] = std::abs(distance) <= layer ? at : static_cast<std::uint32_t>(kSquares);
+    }
+    for (std::size_t i = 0; i < count; ++i) bytes[square[i]] = 1;
+  }
+}
+void markBytesPlain(std::span<const CellPoint> points, float layer, const CellPlane& plane, SquareBytes& bytes) {
+  markBytes(points, layer, plane, bytes);
+}
+STRATA_TARGET_AVX2 void markBytesAvx2(std::span<const CellPoint> points, float layer, const CellPlane& plane,
+                                      SquareBytes& bytes) {
+  markBytes(points, layer, plane, bytes);
+}
+
+/// Not every processor that this is compiled for counts bits by itself.
+int countBits(std::uint64_t bits) {
+  bits -= bits >> 1 & 0x5555555555555555u;
+  bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
+  bits = (bits + (bits >> 4)) & 0x0f0f0f0f0f0f0f0fu;
+  return static_cast<int>(bits * 0x0101010101010101u >> 56);
+}
+int countBits(const SquareRows& rows) {
+  std::array<std::uint64_t, sizeof(SquareRows) / 8> words;
+  std::memcpy(words.data(), rows.data(), sizeof rows);
+  int count = 0;
+  for (const std::uint64_t word : words) count += countBits(word);
+  return count;
+}
+
+/// Bit i of the result: bit 2 i or bit 2 i + 1 of the row.
+std::uint32_t halved(std::uint32_t row) {
+  row = (row | row >> 1) & 0x5555u;
+  row = (row | row >> 1) & 0x3333u;
+  row = (row | row >> 2) & 0x0f0fu;
+  return (row | row >> 4) & 0x00ffu;
+}
 
 /// Eigenvector of the smallest eigenvalue of a symmetric matrix (xx yy zz xy xz yz); zero where it is not unique.
 /// Eigenvalues in closed form (Smith 1961); the vector is the longest cross product of two rows of A - λ.
@@ -45,61 +126,74 @@ void setNormal(const glm::vec3& normal, CellPlane& plane) {
 
 }  // namespace
 
-bool fitPlane(std::span<const glm::u16vec3> points, CellPlane& plane) {
-  std::int64_t sum[3] = {}, product[6] = {};
-  for (const glm::u16vec3& p : points) {
-    const std::int32_t x = p.x, y = p.y, z = p.z;
-    sum[0] += x, sum[1] += y, sum[2] += z;
-    product[0] += x * x, product[1] += y * y, product[2] += z * z;
-    product[3] += x * y, product[4] += x * z, product[5] += y * z;
-  }
-  const auto n = static_cast<double>(points.size());
-  const glm::dvec3 mean =
-      glm::dvec3(static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])) / n;
-  const auto spread = [&](int k, glm::length_t i, glm::length_t j) {
-    return static_cast<double>(product[k]) / n - mean[i] * mean[j];
-  };
+bool fitPlane(std::span<const CellPoint> points, CellPlane& plane) {
+  Moments moments{};
+  if (hasAvx2())
+    addMomentsAvx2(points, moments);
+  else
+    addMomentsPlain(points, moments);
+  std::array<double, 9> mean;
+  for (std::size_t k = 0; k < mean.size(); ++k)
+    mean[k] = static_cast<double>(moments[k]) / static_cast<double>(points.size());
+  const auto spread = [&](std::size_t k, std::size_t i, std::size_t j) { return mean[k] - mean[i] * mean[j]; };
   setNormal(smallestAxis(
-                {spread(0, 0, 0), spread(1, 1, 1), spread(2, 2, 2), spread(3, 0, 1), spread(4, 0, 2), spread(5, 1, 2)}),
+                {spread(3, 0, 0), spread(4, 1, 1), spread(5, 2, 2), spread(6, 0, 1), spread(7, 0, 2), spread(8, 1, 2)}),
             plane);
-  plane.offset = glm::dot(plane.normal, (glm::vec3(mean) + 0.5f) / 1024.0f - 0.5f);
+  plane.offset = glm::dot(plane.normal, (glm::vec3(mean[0], mean[1], mean[2]) + 0.5f) / 1024.0f - 0.5f);
   return std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]) > 0.5f;
 }
 
-void markSquares(std::span<const glm::u16vec3> points, float layer, CellPlane& plane) {
-  const auto u = static_cast<glm::length_t>(plane.u), v = static_cast<glm::length_t>(plane.v);
-  plane.squares.fill(0);
-  constexpr int kShift = std::countr_zero(1024u / kCellGrid);
-  for (const glm::u16vec3& point : points) {
-    const bool near = std::abs(glm::dot(plane.normal, placeInCell(point)) - plane.offset) <= layer;
-    std::uint16_t& row = plane.squares[point[v] >> kShift];
-    row = static_cast<std::uint16_t>(row | static_cast<std::uint32_t>(near) << (point[u] >> kShift));
+void markSquares(std::span<const CellPoint> points, float layer, CellPlane& plane) {
+  SquareBytes bytes{};
+  if (hasAvx2())
+    markBytesAvx2(points, layer, plane, bytes);
+  else
+    markBytesPlain(points, layer, plane, bytes);
+  for (std::size_t row = 0; row < kCellGrid; ++row) {
+    std::uint64_t halves[2];
+    std::memcpy(halves, bytes.data() + row * kCellGrid, sizeof halves);
+    const auto bitsOf = [](std::uint64_t eight) { return static_cast<unsigned>(eight * 0x0102040810204080u >> 56); };
+    plane.squares[row] = static_cast<std::uint16_t>(bitsOf(halves[0]) | bitsOf(halves[1]) << 8);
   }
 }
 
 ClosedSquares::ClosedSquares(const CellPlane& plane, int gridSide) : side(gridSide) {
   const int each = kCellGrid / side;
   const float size = 1.0f / static_cast<float>(side);
-  const float slope = (std::abs(plane.normal[static_cast<glm::length_t>(plane.u)]) +
-                       std::abs(plane.normal[static_cast<glm::length_t>(plane.v)])) /
-                      std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]);
-  const float inside = 0.5f - 0.5f * size * slope;
+  // The plane's height over a square's middle is linear in its column and row.
+  const float alongU =
+      -plane.normal[static_cast<glm::length_t>(plane.u)] / plane.normal[static_cast<glm::length_t>(plane.w)] * size;
+  const float alongV =
+      -plane.normal[static_cast<glm::length_t>(plane.v)] / plane.normal[static_cast<glm::length_t>(plane.w)] * size;
+  const float first = plane.height(0.5f * size - 0.5f, 0.5f * size - 0.5f);
+  const float inside = 0.5f - 0.5f * (std::abs(alongU) + std::abs(alongV));
+  const std::uint32_t all = (1u << side) - 1;
+  const bool isLevel = std::abs(alongU) < 1e-6f;
+  const float perHeight = isLevel ? 0.0f : 1.0f / alongU;
+  SquareRows withPoints{}, crossed{};
   for (int row = 0; row < side; ++row) {
-    std::uint32_t points = 0, hold = 0, out = 0;
+    std::uint32_t points = 0;
     for (int i = 0; i < each; ++i) points |= plane.squares[static_cast<std::size_t>(row * each + i)];
-    for (int column = 0; column < side; ++column) {
-      const float height = plane.height((static_cast<float>(column) + 0.5f) * size - 0.5f,
-                                        (static_cast<float>(row) + 0.5f) * size - 0.5f);
-      const auto hasPoint = static_cast<std::uint32_t>((points >> (column * each) & ((1u << each) - 1)) != 0);
-      const auto leaves = static_cast<std::uint32_t>(std::abs(height) > inside);
-      hold |= hasPoint << column;
-      out |= leaves << column;
+    for (int columns = kCellGrid; columns > side; columns /= 2) points = halved(points);
+    // Columns in which it stays in the cell.
+    const float height = first + alongV * static_cast<float>(row);
+    std::uint32_t in = 0;
+    if (isLevel) {
+      in = std::abs(height) <= inside ? all : 0;
+    } else {
+      const float a = (-inside - height) * perHeight, b = (inside - height) * perHeight;
+      const float least = std::clamp(std::min(a, b), 0.0f, static_cast<float>(side));
+      const int from = static_cast<int>(least) + (static_cast<float>(static_cast<int>(least)) < least ? 1 : 0);
+      const int to = static_cast<int>(std::clamp(std::max(a, b) + 1.0f, 0.0f, static_cast<float>(side)));
+      in = to > from ? (1u << to) - (1u << from) : 0;
     }
     const auto at = static_cast<std::size_t>(row);
-    closed[at] = static_cast<std::uint16_t>(hold | out);
-    needed += side - std::popcount(out);
-    held += std::popcount(hold & ~out);
+    closed[at] = static_cast<std::uint16_t>(points | (all & ~in));
+    crossed[at] = static_cast<std::uint16_t>(in);
+    withPoints[at] = static_cast<std::uint16_t>(points & in);
   }
+  needed = countBits(crossed);
+  held = countBits(withPoints);
 }
 
 SquareRows ClosedSquares::inner() const {
@@ -123,8 +217,8 @@ SquareRectangle largestRectangle(const SquareRows& rows, int side, int least) {
     std::uint32_t common = 0xffffu;
     for (int bottom = top + 1; bottom <= side; ++bottom) {
       common &= rows[static_cast<std::size_t>(bottom - 1)];
-      if (std::popcount(common) * (side - top) <= bestArea) break;
-      if (std::popcount(common) * (bottom - top) <= bestArea) continue;
+      if (countBits(common) * (side - top) <= bestArea) break;
+      if (countBits(common) * (bottom - top) <= bestArea) continue;
       // The longest run: thinned by one at its end until nothing is left.
       int length = 0, last = 0;
       for (std::uint32_t left = common; left != 0; left &= left << 1, ++length) last = std::countr_zero(left);

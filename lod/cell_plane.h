@@ -5,7 +5,6 @@
 #include <span>
 
 #include <glm/glm.hpp>
-#include <glm/gtc/type_precision.hpp>
 
 #include "lod/occluders.h"
 
@@ -16,8 +15,11 @@ inline constexpr int kCellGrid = OccluderSet::kFinestGrid;
 /// Rows of bits, one for each square of a grid.
 using SquareRows = std::array<std::uint16_t, kCellGrid>;
 
+/// The place of a point in its cell in 1/1024 of the cell's side: x | y << 10 | z << 20.
+using CellPoint = std::uint32_t;
+
 /// A plane in a cell, seen along its steepest axis as a height over the other two. Coordinates from the cell's
-/// centre in sides of the cell. Points are given as their place in the cell in 1/1024 of its side.
+/// centre in sides of the cell.
 struct CellPlane {
   glm::vec3 normal{0.0f};
   float offset = 0.0f;
@@ -31,10 +33,10 @@ struct CellPlane {
 };
 
 /// The plane through the points' mean across their smallest principal axis. False where there is none.
-bool fitPlane(std::span<const glm::u16vec3> points, CellPlane& plane);
+bool fitPlane(std::span<const CellPoint> points, CellPlane& plane);
 
 /// Notes in which squares there are points within `layer` of the plane.
-void markSquares(std::span<const glm::u16vec3> points, float layer, CellPlane& plane);
+void markSquares(std::span<const CellPoint> points, float layer, CellPlane& plane);
 
 /// The squares of a coarser grid, and whether each holds a point, or need not: the plane leaves the cell there.
 struct ClosedSquares {

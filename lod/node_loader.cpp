@@ -60,8 +60,7 @@ std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_
   return bytes_.size();
 }
 
-bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders,
-                        StreamedNode& out) {
+bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders, StreamedNode& out) {
   const NodeRecord& record = store_->hierarchy().nodes[request.node];
   std::span<const std::byte> bytes = bytes_.subspan(static_cast<std::size_t>(request.offset - offset_), request.bytes);
   std::vector<std::byte> joined;  // with the part of a plane that the read before has brought
@@ -78,6 +77,7 @@ bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, 
     const auto head = bytes.first(std::min<std::size_t>(bytes.size(), record.headBytes));
     out.head.assign(head.begin(), head.end());
     out.occluding.occluders.clear();
+    out.occluding.cellSide = 0.0;
   }
   out.ends = decodeForDrawing(record, store_->info(), out.head, from, bytes, scratch_, out);
   if (out.position[0].empty() && record.pointCount > 0) return false;
@@ -87,7 +87,7 @@ bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, 
   out.leadingBytes = isLittle ? request.from + request.bytes : out.ends.whole;
   out.head.resize(record.headBytes);
   if (isLittle) out.head.insert(out.head.end(), rest.begin(), rest.end());
-  if (withOccluders && out.occluding.occluders.empty())
+  if (withOccluders && out.occluding.cellSide == 0.0)  // they come from the leading bits alone: once is enough
     findOccluders(out, nodeCube({record.key}, store_->info().rootCube()), record.childMask, out.occluding);
   if (out.memoryBytes() > nodeBytesBound(record, store_->info())) shrink(out);
   return true;

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <span>
+#include <utility>
 
+#include "io/instruction_sets.h"
 #include "lod/cell_plane.h"
 
 namespace strata {
@@ -18,12 +19,40 @@ constexpr std::size_t kMostSpread = 3;  // occluders of a cell that leave room f
 constexpr std::size_t kMostParts = 2;   // of a plane in a cell
 constexpr float kLeastArea = 0.05f;     // of an occluder, in sides of a cell squared: slivers are not worth their time
 
-/// The node's points sorted by cell, each as its place in the cell in 1/1024 of the cell's side.
+/// Places of points in their cells, and the cells.
+inline __attribute__((always_inline)) void placeBatch(const std::uint32_t* positions, std::size_t count,
+                                                      const glm::vec3& start, const glm::vec3& step, int cellsAlong,
+                                                      CellPoint* points, std::uint16_t* cells) {
+  const float last = static_cast<float>(1024 * cellsAlong - 1);
+  const auto place = [last](float from, float each, std::uint32_t coordinate) {
+    const float at = from + each * static_cast<float>(static_cast<int>(coordinate));
+    return static_cast<std::uint32_t>(static_cast<int>(std::min(std::max(at, 0.0f), last)));
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t p = positions[i];
+    const std::uint32_t x = place(start.x, step.x, p & 1023), y = place(start.y, step.y, p >> 10 & 1023),
+                        z = place(start.z, step.z, p >> 20);
+    points[i] = (x & 1023) | (y & 1023) << 10 | (z & 1023) << 20;
+    cells[i] = static_cast<std::uint16_t>(((x >> 10) * kCells + (y >> 10)) * kCells + (z >> 10));
+  }
+}
+void placeBatchPlain(const std::uint32_t* positions, std::size_t count, const glm::vec3& start, const glm::vec3& step,
+                     int cellsAlong, CellPoint* points, std::uint16_t* cells) {
+  placeBatch(positions, count, start, step, cellsAlong, points, cells);
+}
+STRATA_TARGET_AVX2 void placeBatchAvx2(const std::uint32_t* positions, std::size_t count, const glm::vec3& start,
+                                       const glm::vec3& step, int cellsAlong, CellPoint* points, std::uint16_t* cells) {
+  placeBatch(positions, count, start, step, cellsAlong, points, cells);
+}
+
+/// The node's points sorted by cell.
 class PointsByCell {
  public:
   PointsByCell(const NodeData& node, const Box& cube, int cellsAlong) {
     const double perMetre = 1024.0 * cellsAlong / cube.size().x;
-    std::vector<glm::ivec3> places(node.pointCount());
+    const std::size_t count = node.pointCount();
+    std::vector<CellPoint> places(count);
+    std::vector<std::uint16_t> cells(count);
     for (const Batch& batch : node.batches) {
       glm::vec3 start, step;
       for (glm::length_t axis = 0; axis < 3; ++axis) {
@@ -33,37 +62,38 @@ class PointsByCell {
         start[axis] =
             static_cast<float>((node.origin[axis] + batch.boxMin[axis] - cube.min[axis] + half * metres) * perMetre);
       }
-      const std::uint32_t* const positions = node.position[0].data() + batch.firstPoint;
-      glm::ivec3* const out = places.data() + batch.firstPoint;
-      for (std::uint32_t i = 0; i < batch.pointCount; ++i) {
-        const std::uint32_t p = positions[i];
-        const auto place = [&](glm::length_t axis, std::uint32_t coordinate) {
-          const int at = static_cast<int>(start[axis] + step[axis] * static_cast<float>(static_cast<int>(coordinate)));
-          return std::min(std::max(at, 0), 1024 * cellsAlong - 1);
-        };
-        out[i] = {place(0, p & 1023), place(1, p >> 10 & 1023), place(2, p >> 20)};
-      }
+      const auto placeAll = hasAvx2() ? placeBatchAvx2 : placeBatchPlain;
+      placeAll(node.position[0].data() + batch.firstPoint, batch.pointCount, start, step, cellsAlong,
+               places.data() + batch.firstPoint, cells.data() + batch.firstPoint);
     }
-    std::vector<std::uint16_t> cells(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const glm::ivec3 cell = places[i] >> 10;
-      cells[i] = static_cast<std::uint16_t>((cell.x * kCells + cell.y) * kCells + cell.z);
-      ++start_[cells[i] + std::size_t{1}];
+    // Both halves at once, each with counters of its own: points of one cell follow each other, and would wait.
+    const std::size_t half = count / 2;
+    std::array<std::uint32_t, kCellCount> first{}, second{};
+    for (std::size_t i = 0; i < half; ++i) {
+      ++first[cells[i]];
+      ++second[cells[half + i]];
     }
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::array<std::uint32_t, kCellCount> next;
-    std::copy_n(start_.begin(), kCellCount, next.begin());
-    points_.resize(places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) points_[next[cells[i]]++] = glm::u16vec3(places[i] & 1023);
+    if (count % 2 != 0) ++second[cells[count - 1]];
+    for (std::size_t cell = 0; cell < kCellCount; ++cell) {
+      start_[cell + 1] = start_[cell] + first[cell] + second[cell];
+      second[cell] = start_[cell] + first[cell];
+      first[cell] = start_[cell];
+    }
+    points_.resize(count);
+    for (std::size_t i = 0; i < half; ++i) {
+      points_[first[cells[i]]++] = places[i];
+      points_[second[cells[half + i]]++] = places[half + i];
+    }
+    if (count % 2 != 0) points_[second[cells[count - 1]]] = places[count - 1];
   }
 
-  std::span<const glm::u16vec3> of(std::size_t cell) const {
+  std::span<const CellPoint> of(std::size_t cell) const {
     return {points_.data() + start_[cell], points_.data() + start_[cell + 1]};
   }
 
  private:
   std::array<std::uint32_t, kCellCount + 1> start_{};
-  std::vector<glm::u16vec3> points_;
+  std::vector<CellPoint> points_;
 };
 
 /// The part of the plane inside the cell: a part of the cell's square lifted to the plane, clipped at the cell's top
@@ -189,7 +219,7 @@ class Finder {
   }
 
   void tryPlane(std::size_t cell, CellPlane& plane, std::uint32_t seed) {
-    const std::span<const glm::u16vec3> points = points_.of(cell);
+    const std::span<const CellPoint> points = points_.of(cell);
     if (points.size() < OccluderSet::kLeastPoints || found_.size() >= OccluderSet::kMost) return;
     markSquares(points, layer_, plane);
     std::array<ClosedSquares, 3> grids;
@@ -246,8 +276,11 @@ int octantOf(const glm::ivec3& cell, int cellsAlong) {
 /// Joins whole cells that lie side by side in one plane into rectangles, in place. A surface of 8 x 8 cells becomes one
 /// occluder, where all of it is as closed and goes on below as one.
 void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t childMask) {
-  std::array<std::vector<std::uint32_t>, kCellCount> byCell;
-  for (std::size_t i = 0; i < found.size(); ++i) byCell[found[i].cell].push_back(static_cast<std::uint32_t>(i));
+  // Those of each cell in order: a list through `found`, by position + 1.
+  std::array<std::uint32_t, kCellCount> firstOf{};
+  std::vector<std::uint32_t> nextOf(found.size());
+  for (std::size_t i = found.size(); i-- > 0;)
+    nextOf[i] = std::exchange(firstOf[found[i].cell], static_cast<std::uint32_t>(i + 1));
   std::vector<bool> joined(found.size(), false);
   const auto open = [&](const glm::ivec3& cell) { return (childMask >> octantOf(cell, cellsAlong) & 1) != 0; };
   const auto isWhole = [](const Finder::Found& f) { return f.part.area() == f.grid * f.grid; };
@@ -267,9 +300,11 @@ void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t c
                           std::abs(first.plane.height(0.0f, 0.5f) - first.plane.height(0.0f, 0.0f));
       if (cell[u] >= cellsAlong || cell[v] >= cellsAlong || cell[v] < 0 || std::abs(height) + slope > 0.5f)
         return found.size();
-      for (const std::uint32_t k : byCell[cellIndex(cell)])
-        if (!joined[k] && found[k].seed == first.seed && isWhole(found[k]) && open(cell) == open(at))
-          return static_cast<std::size_t>(k);
+      for (std::uint32_t k = firstOf[cellIndex(cell)]; k != 0; k = nextOf[k - 1]) {
+        const Finder::Found& f = found[k - 1];
+        if (!joined[k - 1] && f.seed == first.seed && isWhole(f) && open(cell) == open(at))
+          return static_cast<std::size_t>(k - 1);
+      }
       return found.size();
     };
     if (other(0, 0) == found.size()) continue;
