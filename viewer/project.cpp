@@ -257,6 +257,7 @@ std::string projectJson(const std::string& path, const Project& project) {
         {{"name", m.name}, {"kind", measureName(m.kind)}, {"visible", m.visible}, {"points", points}});
     if (m.kind == MeasureKind::profile) json["measurements"].back()["width"] = m.width;
   }
+  if (project.path) json["path"] = Json::parse(cameraPathJson(*project.path));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -292,6 +293,7 @@ Project parseProject(const std::string& path, const std::string& text) {
   for (const Json& entry : members.list("clip_boxes")) project.clipBoxes.push_back(parseClipBox(path, entry));
   for (const Json& entry : members.list("measurements"))
     project.measurements.push_back(parseMeasurement(path, entry, "measurements"));
+  if (const Json* flight = members.find("path")) project.path = parseCameraPath(path, flight->dump());
   return project;
 }
 

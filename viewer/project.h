@@ -1,10 +1,12 @@
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/frame.h"
 #include "core/view.h"
 #include "lod/selection.h"
+#include "viewer/camera_path.h"
 #include "viewer/clip_boxes.h"
 #include "viewer/measurement.h"
 
@@ -29,6 +31,7 @@ struct Project {
   double pointsPerPixel = SelectionOptions{}.pointsPerPixel;
   std::vector<Bookmark> bookmarks;
   std::vector<Measurement> measurements;
+  std::optional<CameraPath> path;  ///< where one has been made
 };
 
 /// The text of the file at `path`, and back. Settings that are absent keep their defaults; parseProject throws Error

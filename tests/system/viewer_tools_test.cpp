@@ -199,6 +199,37 @@ TEST_F(ViewerTools, AProfileIsDrawnByTwoClicksShownInItsWindowAndKeptWithItsWidt
   EXPECT_EQ(kept[0].width, profileWidth(kept[0].points));
 }
 
+TEST_F(ViewerTools, ACameraPathComesBackWithItsProject) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  {
+    ViewerHand hand = handOn(store().string());
+    hand.key("k");
+    hand.drag(420, 350, 480, 350);
+    hand.key("k");
+    save(hand, "city.project.json", "path");
+    EXPECT_EQ(hand.quit(), 0) << hand.said();
+  }
+  ViewerHand again = handOn(file("path.project.json").string());
+  EXPECT_EQ(again.settled().at("path_keys"), 2);
+  const Json eye = again.state().at("eye");
+  again.key("space");
+  again.until("the flight to end", [&](const Json& s) { return s.at("settled").get<bool>(); });
+  for (int i = 0; i < 3; ++i)  // at the last key, where it was saved
+    EXPECT_NEAR(again.state().at("eye")[i].get<double>(), eye[i].get<double>(), 1e-6);
+  EXPECT_EQ(again.quit(), 0) << again.said();
+}
+
+TEST_F(ViewerTools, WhatProgressiveDrawingCannotDoCannotBeChosen) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  for (const bool progressive : {true, false}) {
+    ViewerHand hand(file("."), {store().string(), "--size", "1000x700", progressive ? "--progressive" : "--backend",
+                                progressive ? "0.1" : "cpu"});
+    hand.clickItem("high-quality shading");
+    EXPECT_EQ(hand.save("city.project.json").at("settings").at("high_quality").get<bool>(), !progressive);
+    EXPECT_EQ(hand.quit(), 0) << hand.said();
+  }
+}
+
 TEST_F(ViewerTools, ClicksThatComeFasterThanTheFramesAllCount) {
   if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
   ViewerHand hand = handOn(store().string());

@@ -34,6 +34,7 @@ Project someProject() {
   project.bookmarks = {{"the \"tower\"", project.view}};
   project.measurements = {{"d", MeasureKind::distance, {{1, 2, 3}, {4, 5, 6.001}}, false, 1.0},
                           {"cut", MeasureKind::profile, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}}, true, 2.5}};
+  project.path = CameraPath{24.0, PathSpeed::keyed, 1.0, {{0.0, {1, 2, 3}, {4, 5, 6}}, {2.5, {7, 8, 9}, {4, 5, 6}}}};
   return project;
 }
 
@@ -62,6 +63,8 @@ TEST(Project, ComesBackAsItWasSaved) {
   ASSERT_EQ(read.bookmarks.size(), 1u);
   EXPECT_EQ(read.bookmarks[0].name, saved.bookmarks[0].name);
   EXPECT_EQ(read.measurements, saved.measurements);
+  ASSERT_TRUE(read.path);
+  EXPECT_EQ(cameraPathJson(*read.path), cameraPathJson(*saved.path));
 }
 
 TEST(Project, MovesWithItsFolder) {

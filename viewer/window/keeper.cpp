@@ -100,6 +100,17 @@ CameraPath Keeper::pathOf(const View& view) const {
   return path;
 }
 
+std::optional<CameraPath> Keeper::path(const View& view) const {
+  if (state_.path.keys().empty()) return std::nullopt;
+  return pathOf(view);
+}
+
+void Keeper::setPath(const CameraPath& path) {
+  state_.path.setKeys(path.keys);
+  state_.fps = path.fps;
+  state_.speed = path.speed;
+}
+
 void Keeper::toggleRecording(const View& view) {
   if (state_.path.recording()) {
     state_.path.endRecording();
@@ -149,9 +160,7 @@ void Keeper::savePath(const View& view, const Scene& scene) {
 void Keeper::openPath() {
   try {
     const CameraPath path = readCameraPath(state_.pathFile);
-    state_.path.setKeys(path.keys);
-    state_.fps = path.fps;
-    state_.speed = path.speed;
+    setPath(path);
     notice_ = "opened " + state_.pathFile + ", " + std::to_string(path.keys.size()) + " keys";
   } catch (const Error& error) {
     error_ = error.what();

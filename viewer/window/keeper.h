@@ -34,6 +34,9 @@ class Keeper {
   /// Does a little of it and shows how far it is. Ends it where `cancel` or the user says so.
   void goOn(const Scene& scene, bool cancel);
 
+  /// The path as it is, for the project; nothing where it has no key.
+  std::optional<CameraPath> path(const View& view) const;
+  void setPath(const CameraPath& path);
   /// As JSON, for strata-bench.
   void savePath(const View& view, const Scene& scene);
   void startPicture(const View& view, const Scene& scene);

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "viewer/bench/html_text.h"
+#include "viewer/drawing.h"
 #include "viewer/legend.h"
 #include "viewer/window/item_places.h"
 #include "viewer/window/overlay.h"
@@ -74,15 +75,28 @@ void drawLegend(const Legend& legend) {
   }
 }
 
-bool drawColour(DrawOptions& draw, const ColourLimits& limits) {
+/// Why the item drawn last is grey.
+void explain(bool disabled, const char* why) {
+  if (disabled && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why);
+}
+
+bool drawColour(DrawOptions& draw, const ColourLimits& limits, bool progressive) {
   bool changed = false;
-  // In the order of ColourMode.
-  int mode = static_cast<int>(draw.colour);
-  if (ImGui::Combo("colour", &mode,
-                   "rgb\0intensity\0elevation\0classification\0level\0return\0normal\0precision\0overdraw\0")) {
-    draw.colour = static_cast<ColourMode>(mode);
-    changed = true;
+  if (ImGui::BeginCombo("colour", colourName(draw.colour))) {
+    for (int i = 0; i <= static_cast<int>(ColourMode::overdraw); ++i) {
+      const auto mode = static_cast<ColourMode>(i);
+      const bool disabled = progressive && mode == ColourMode::overdraw;
+      ImGui::BeginDisabled(disabled);
+      if (ImGui::Selectable(colourName(mode), mode == draw.colour)) {
+        draw.colour = mode;
+        changed = true;
+      }
+      ImGui::EndDisabled();
+      explain(disabled, "Progressive drawing does not count overdraw.\nChoose another way below at \"drawn by\".");
+    }
+    ImGui::EndCombo();
   }
+  noteItem("colour");
   if (draw.colour == ColourMode::intensity)
     changed = drawRange(draw.intensityRange, limits.intensity, limits.automatic.intensityRange, "%.0f",
                         ImGuiSliderFlags_Logarithmic) ||
@@ -115,7 +129,7 @@ bool drawBackground(DrawOptions& draw) {
   return drawColourButton("below", *draw.backgroundBelow) || changed;
 }
 
-bool drawSettings(ViewerSettings& settings, const ColourLimits& limits) {
+bool drawSettings(ViewerSettings& settings, const ColourLimits& limits, bool progressive) {
   bool changed = false;
   float budget = static_cast<float>(settings.selection.pointBudget);
   if (ImGui::SliderFloat("points", &budget, kLeastBudget, kMostBudget,
@@ -130,12 +144,16 @@ bool drawSettings(ViewerSettings& settings, const ColourLimits& limits) {
     changed = true;
   }
   changed = ImGui::SliderInt("size", &settings.draw.pointSize, 1, 8, "%d px") || changed;
-  changed = drawColour(settings.draw, limits) || changed;
+  changed = drawColour(settings.draw, limits, progressive) || changed;
   bool blended = settings.draw.shading == Shading::highQuality;
+  ImGui::BeginDisabled(progressive);
   if (ImGui::Checkbox("high-quality shading", &blended)) {
     settings.draw.shading = blended ? Shading::highQuality : Shading::plain;
     changed = true;
   }
+  ImGui::EndDisabled();
+  noteItem("high-quality shading");
+  explain(progressive, "Progressive drawing shades plainly.\nChoose another way below at \"drawn by\".");
   constexpr int kJumpFlood = 4;
   int fill = settings.draw.jumpFlood ? kJumpFlood : settings.draw.fill / 2;
   if (ImGui::Combo("fill holes", &fill, "no\0003 x 3\0005 x 5\0007 x 7\0by jump flooding\0")) {
@@ -266,14 +284,28 @@ void drawSpinner(const ViewerStats& stats) {
   canvas->PathStroke(IM_COL32(255, 255, 255, 110), 0, 2.5f);
 }
 
-void drawHint(const std::string& text) {
-  if (text.empty()) return;
+namespace {
+
+/// A text on a dark ground, in the middle, `top` down from the upper edge.
+void drawPill(const std::string& text, float top, ImU32 colour) {
   ImDrawList* canvas = ImGui::GetBackgroundDrawList();
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  const float left = 0.5f * (ImGui::GetIO().DisplaySize.x - size.x), top = 16.0f;
-  canvas->AddRectFilled({left - 10.0f, top - 6.0f}, {left + size.x + 10.0f, top + size.y + 6.0f},
-                        IM_COL32(0, 0, 0, 190), 5.0f);
-  canvas->AddText({left, top}, IM_COL32(64, 200, 255, 255), text.c_str());
+  const float left = 0.5f * (ImGui::GetIO().DisplaySize.x - size.x), rim = 6.0f * uiScale();
+  canvas->AddRectFilled({left - 1.6f * rim, top - rim}, {left + size.x + 1.6f * rim, top + size.y + rim},
+                        IM_COL32(0, 0, 0, 190), 5.0f * uiScale());
+  canvas->AddText({left, top}, colour, text.c_str());
+}
+
+}  // namespace
+
+void drawHint(const std::string& text) {
+  if (!text.empty()) drawPill(text, 16.0f * uiScale(), IM_COL32(64, 200, 255, 255));
+}
+
+void drawFlySpeed(const ViewerStats& stats) {
+  if (stats.flying)
+    drawPill(readableCount(stats.flySpeed) + " m/s", ImGui::GetIO().DisplaySize.y - 32.0f * uiScale(),
+             IM_COL32(255, 255, 255, 220));
 }
 
 bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourLimits& limits,
@@ -287,7 +319,8 @@ bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourL
     ImGui::TextWrapped("%s", stats.layers.c_str());
     ImGui::TextDisabled("%s", stats.rasterizer.c_str());
     ImGui::PushItemWidth(0.55f * panelWidth());
-    if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen)) changed = drawSettings(settings, limits);
+    if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen))
+      changed = drawSettings(settings, limits, stats.progressive);
     if (ImGui::CollapsingHeader("Speed")) drawStats(stats);
     if (ImGui::CollapsingHeader("Inside")) inside();
     ImGui::PopItemWidth();

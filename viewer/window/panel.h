@@ -42,9 +42,11 @@ struct ViewerStats {
   std::uint32_t missingNodes = 0;
   bool complete = false;
   MoveMode mode = MoveMode::orbit;
-  double flySpeed = 0.0;  ///< metres a second that the keys move
-  std::string error;      ///< stays until it is closed
-  std::string notice;     ///< what was done last
+  double flySpeed = 0.0;     ///< metres a second that the keys move
+  bool flying = false;       ///< they do, or the mouse would
+  bool progressive = false;  ///< the rasterizer shades plainly and counts no overdraw
+  std::string error;         ///< stays until it is closed
+  std::string notice;        ///< what was done last
 };
 
 /// All keys and buttons, in a window of its own; `open` turns false when it is closed.
@@ -55,6 +57,9 @@ void drawError(std::string& text);
 
 /// A turning arc in the corner of the picture for as long as detail is missing.
 void drawSpinner(const ViewerStats& stats);
+
+/// The speed of the flight, at the lower edge of the picture, while there is one.
+void drawFlySpeed(const ViewerStats& stats);
 
 /// What is to be done next, at the upper edge of the picture; nothing where the text is empty.
 void drawHint(const std::string& text);

@@ -21,12 +21,12 @@
 #include "viewer/window/measure_panel.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel.h"
-#include "viewer/window/point_lookup.h"
 #include "viewer/window/profile_panel.h"
 #include "viewer/window/progressive_panel.h"
 #include "viewer/window/scan_conversion.h"
 #include "viewer/window/screen.h"
 #include "viewer/window/state_file.h"
+#include "viewer/window/tool_hand.h"
 #include "viewer/window/window.h"
 
 namespace strata {
@@ -36,7 +36,6 @@ constexpr std::chrono::milliseconds kLongestWait{120'000};  // for a screenshot'
 constexpr double kIdleWait = 0.25;                          // seconds between frames where nothing happens
 constexpr double kNearShare = 1e-5;  // of the scan's diagonal: how near the eye may come to something small
 constexpr int kPanelFrames = 2;
-constexpr int kClickReach = 6;  // pixels beside a point that still mean it
 constexpr std::uint32_t kPointedColour = 0xffffc840u;
 constexpr double kSmoothing = 0.1;  // share of the newest frame in the frame time shown
 
@@ -85,6 +84,7 @@ class ViewerApp {
     settings_.backend = options.backend;
     backend_ = options.backend;
     stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
+    stats_.progressive = progressive_ != nullptr;
     stats_.error = opened_.failures;
     for (const std::size_t i : opened_.asked) tools_.layers.push_back(layerNames({options.stores[i]}));
     tools_.shown.assign(opened_.asked.size(), true);
@@ -117,6 +117,7 @@ class ViewerApp {
     tools_.clip.boxes() = project.clipBoxes;
     tools_.measure.kept() = project.measurements;
     keptBefore_ = project.measurements.size();
+    if (project.path) keeper_.setPath(*project.path);
     control_.setView(project.view);
     select();
     layers_.setShown(tools_.shown);
@@ -138,15 +139,21 @@ class ViewerApp {
         sayState(input, true);
         continue;
       }
-      steer(input);
-      useTools(input);
+      steer(control_, tools_, input, seen());
+      stats_.mode = control_.mode();
+      stats_.flySpeed = flySpeed(control_.view(), input.fly.fast);
+      stats_.flying = !input.fly.still() || control_.mode() == MoveMode::fly;
+      if (input.help) helpOpen_ = !helpOpen_;
+      if (input.save) saveProject();
+      if (const std::string error = hand_.use(tools_, input, control_.view(), seen()); !error.empty())
+        stats_.error = error;
       useKeeper(input);
       drawFrame(input.width, input.height);
       const bool changed = drawOver();
       window_.finishFrame();
       window_.present();
       idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
-             !lookup_.pending() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
+             !hand_.busy() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
       sayState(input, idle);
     }
   }
@@ -240,79 +247,8 @@ class ViewerApp {
     keeper_.record(control_.view(), input.seconds);
   }
 
-  /// The world point below the cursor in the newest picture, or within a click's reach of it.
-  std::optional<glm::dvec3> pointUnder(const glm::dvec2& cursor) const {
-    const auto pixel = drawnPixelAt(frame_, cursor, kClickReach);
-    if (!pixel) return std::nullopt;
-    const glm::dvec2 seen = glm::ivec2(glm::floor(cursor)) == *pixel ? cursor : glm::dvec2(*pixel) + 0.5;
-    const float depth = frame_.depth[static_cast<std::size_t>(pixel->y) * static_cast<std::size_t>(frame_.width) +
-                                     static_cast<std::size_t>(pixel->x)];
-    return worldPoint(control_.view(), seen, static_cast<double>(depth));
-  }
-
-  void steer(const WindowInput& input) {
-    control_.resize(input.width, input.height);
-    control_.advance(input.seconds);
-    if (input.leftPressed && tools_.clip.press(control_.view(), input.cursor)) {
-      control_.release();
-    } else if (input.leftPressed)
-      control_.pressLeft(input.cursor, pointUnder(input.cursor));
-    if (input.rightPressed) control_.pressRight(input.cursor, pointUnder(input.cursor));
-    if (input.dragging && tools_.clip.held())
-      tools_.clip.move(control_.view(), input.cursor);
-    else if (input.dragging)
-      control_.move(input.cursor);
-    if (!input.dragging) control_.release();
-    if (input.wheel != 0.0) control_.wheel(input.wheel, input.cursor, pointUnder(input.cursor));
-    if (!input.fly.still()) control_.fly(input.fly, input.seconds);
-    const View& view = control_.view();
-    stats_.flySpeed = flySpeed(view, input.fly.fast);
-    if (input.frameAll) control_.glideTo(framed(view, scene_.bounds));
-    if (input.front) control_.glideTo(standardView(view, scene_.bounds, StandardView::front));
-    if (input.side) control_.glideTo(standardView(view, scene_.bounds, StandardView::side));
-    if (input.top) control_.glideTo(standardView(view, scene_.bounds, StandardView::top));
-    if (input.nextMode) control_.setMode(nextMode(control_.mode()));
-    stats_.mode = control_.mode();
-    if (input.orthographic) control_.setView(withOrthographic(view, !view.orthographic));
-    if (input.doubleClicked && !tools_.measure.active())
-      if (const auto point = pointUnder(input.cursor)) control_.glideTo(approached(view, *point));
-  }
-
-  /// Clicks and keys of picking and measuring; the answers of the disk.
-  void useTools(const WindowInput& input) {
-    if (input.help) helpOpen_ = !helpOpen_;
-    if (input.measure) tools_.measure.begin(MeasureKind::distance);
-    if (input.profile) tools_.measure.begin(MeasureKind::profile);
-    if (input.clipBox) tools_.clip.add(boxInView(control_.view(), scene_.bounds));
-    if (input.keep) tools_.measure.finish();
-    if (input.takeBack) tools_.measure.undo();
-    if (input.drop) tools_.measure.cancel();
-    if (input.save) saveProject();
-    const bool onHandle = tools_.clip.held().has_value();
-    if (!input.dragging) tools_.clip.release();
-    if (input.clicked && !onHandle && list_ != nullptr) {
-      if (const auto seen = drawnPointAt(*list_, frame_, input.cursor, kClickReach)) {
-        const std::shared_ptr<const NodeData>& node = list_->items[seen->item].node;
-        lookup_.ask(layers_.stores()[layers_.indexOfItem(seen->item)], node->key, seen->point,
-                    pointUnder(input.cursor).value_or(node->origin));
-      }
-    }
-    if (const auto answer = lookup_.take()) {
-      if (!answer->error.empty()) {
-        stats_.error = answer->error;
-      } else {
-        tools_.picked = answer->point;
-        tools_.measure.add(answer->point.position);
-      }
-    }
-    if (input.doubleClicked && tools_.measure.active() && isOpenEnded(tools_.measure.current()->kind))
-      endMeasuring_ = true;
-    if (endMeasuring_ && !lookup_.pending()) {
-      tools_.measure.finish();
-      endMeasuring_ = false;
-    }
-    tools_.lookingUp = lookup_.pending();
-  }
+  /// What is on the screen, which the hand means.
+  SeenScene seen() const { return {layers_, list_, frame_, scene_.bounds}; }
 
   void drawFrame(int width, int height) {
     control_.resize(width, height);
@@ -357,6 +293,7 @@ class ViewerApp {
     try {
       rasterizer_ = createRasterizer(settings_.backend, {}, adoptCurrentContext(Window::getProc()));
       progressive_ = nullptr;
+      stats_.progressive = false;
       backend_ = settings_.backend;
       stats_.rasterizer = std::string(rasterizer_->name()) + ", " + rasterizer_->device();
     } catch (const Error& error) {
@@ -392,6 +329,7 @@ class ViewerApp {
     if (list_ != nullptr) inside_.drawOver(layers_, *list_, control_.view());
     drawSpinner(stats_);
     drawHint(tools_.measure.hint());
+    drawFlySpeed(stats_);
     bool changed = drawSettingsPanel();
     if (followDrawing(settings_.draw, settings_.selection)) select();  // classes hidden, a clip box moved
     if (progressive_ != nullptr) changed = drawProgressivePanel(*progressive_) || changed;
@@ -442,9 +380,16 @@ class ViewerApp {
     const std::string file = options_.project.empty() ? tools_.layers.front() + ".project.json" : options_.project;
     std::vector<bool> shown = lostShown_;  // what is not there today is kept for another day
     for (std::size_t i = 0; i < opened_.asked.size(); ++i) shown[opened_.asked[i]] = tools_.shown[i];
-    save(file, projectJson(file, {options_.stores, shown, control_.view(), settings_.draw, tools_.clip.boxes(),
-                                  settings_.selection.pointBudget, settings_.selection.pointsPerPixel, tools_.bookmarks,
-                                  tools_.measure.kept()}));
+    save(file, projectJson(file, {.stores = options_.stores,
+                                  .shown = shown,
+                                  .view = control_.view(),
+                                  .draw = settings_.draw,
+                                  .clipBoxes = tools_.clip.boxes(),
+                                  .pointBudget = settings_.selection.pointBudget,
+                                  .pointsPerPixel = settings_.selection.pointsPerPixel,
+                                  .bookmarks = tools_.bookmarks,
+                                  .measurements = tools_.measure.kept(),
+                                  .path = keeper_.path(control_.view())}));
     if (!keeper_.state().path.keys().empty()) keeper_.savePath(control_.view(), keeperScene());
   }
 
@@ -468,11 +413,10 @@ class ViewerApp {
   std::uint64_t damageSaid_ = 0;          ///< nodes given up that the user was told of
   std::vector<bool> lostShown_;           ///< by path asked for: what the project said
   ToolsState tools_;
-  PointLookup lookup_;
+  ToolHand hand_;
   Keeper keeper_;
   std::vector<glm::dvec4> planes_;  ///< of the command line
   std::size_t keptBefore_ = 0;      ///< measurements in the last frame
-  bool endMeasuring_ = false;       ///< as soon as the point asked for is there
   bool helpOpen_ = false;
   std::uint64_t framesDrawn_ = 0;
   const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
