@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -95,6 +96,10 @@ int run(int argc, char** argv) {
   app.add_flag("--normals", options.normals, "estimate normals for scans that have none");
   app.add_flag("--plan", plan, "say what the conversion would take, and convert nothing; -o and --temp name the disks");
   app.add_flag("--json", json, "print one JSON object as the last line; progress as JSON lines on stderr");
+  double progressSeconds = 10.0;
+  app.add_option("--progress-every", progressSeconds, "seconds between two lines of progress, but on a terminal")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
   if (!parseCommandLine(app, argc, argv)) return 0;
   if (!plan && app.count("--output") == 0) throw UsageError("--output is required");
   options.memoryBytes = parseBytes("--memory", memory);
@@ -115,7 +120,8 @@ int run(int argc, char** argv) {
     return 0;
   }
   const auto converted = [&] {
-    ProgressDisplay display(style, stderr, threadsOf(options));
+    ProgressDisplay display(style, stderr, threadsOf(options),
+                            std::chrono::milliseconds(std::llround(1000.0 * progressSeconds)));
     control.progress = [&display](const Progress& progress) { display.update(progress); };
     return convert(options, control);
   };

@@ -192,6 +192,11 @@ class ViewerHand {
     key("ctrl+s");
     return Json::parse(readWhole(folder_ / file));
   }
+  /// The window that follows the one which asked whether to convert a scan.
+  void turnToScene() {
+    until("the scene", [](const Json& s) { return s["drawn"].get<int>() > 0 && s["settled"].get<bool>(); });
+    takeFocus();
+  }
   /// A picture of the screen, as a PNG file in the folder.
   void photograph(const std::string& name) {
     const Finished made =

@@ -324,6 +324,28 @@ TEST_F(Viewer, ConvertsAScanBesideItselfAndOpensItAndTheNextTimeOpensThatStore) 
   }
 }
 
+TEST_F(Viewer, ANewUserGetsFromAScanToAMeasuredDistance) {
+  if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
+  const std::filesystem::path folder = file("first");
+  std::filesystem::create_directory(folder);
+  ASSERT_EQ(runProgram("strata-export", {city().string(), "-o", (folder / "scan.laz").string()}).exitCode, 0);
+  // Something that is no store stands where the store belongs: that is said, and can be put right.
+  std::ofstream(folder / "scan.strata") << "no store";
+  ViewerHand hand(folder, {(folder / "scan.laz").string(), "--backend", "cpu", "--size", "800x600"});
+  hand.clickItem("convert");
+  hand.until("a message", [](const Json& s) { return s.at("error") != ""; });
+  EXPECT_NE(hand.frames(3).at("error").get<std::string>().find("scan.strata"), std::string::npos) << hand.state();
+  std::filesystem::remove(folder / "scan.strata");
+  hand.clickItem("convert");
+  hand.turnToScene();
+  hand.key("m");
+  hand.click(380, 330);
+  hand.until("measuring", 1);
+  hand.click(450, 380);
+  hand.until("measured", 1);
+  EXPECT_EQ(hand.quit(), 0) << hand.said();
+}
+
 TEST_F(Viewer, AScanThatCannotBeConvertedIsRefusedInOneLine) {
   if (!std::filesystem::exists(kXvfbRun)) GTEST_SKIP() << "xvfb-run is not there";
   std::ofstream(file("broken.las")) << "this is no LAS file";

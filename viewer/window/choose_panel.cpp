@@ -105,8 +105,9 @@ bool drawClassSection(const std::bitset<256>& present, std::bitset<256>& shown) 
     const std::uint32_t colour = classificationColour(static_cast<std::uint8_t>(c));
     ImGui::ColorButton("##colour", ImGui::ColorConvertU32ToFloat4(colour),
                        ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoDragDrop,
-                       ImVec2(14.0f * uiScale(), 14.0f * uiScale()));
+                       ImVec2(14.0f * uiScale(), ImGui::GetFrameHeight()));
     ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
     ImGui::Text("%zu %s", c, className(static_cast<std::uint8_t>(c)).c_str());
     ImGui::SameLine();
     ImGui::SetCursorPosX(240.0f * uiScale());

@@ -34,8 +34,10 @@ void drawPicked(const ToolsState& state) {
   if (ImGui::SmallButton("copy coordinates")) ImGui::SetClipboardText(state.picked->coordinates.c_str());
   for (const auto& [name, value] : state.picked->facts) {
     ImGui::TextDisabled("%s", name.c_str());
-    ImGui::SameLine(0.42f * panelWidth());
-    ImGui::TextWrapped("%s", value.c_str());
+    ImGui::SameLine(0.46f * panelWidth());
+    const bool isPath = value.starts_with('/');  // its end says what it is, all of it does not fit
+    ImGui::TextWrapped("%s", isPath ? value.substr(value.rfind('/') + 1).c_str() : value.c_str());
+    if (isPath && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", value.c_str());
   }
 }
 

@@ -132,18 +132,18 @@ bool drawBackground(DrawOptions& draw) {
 bool drawSettings(ViewerSettings& settings, const ColourLimits& limits, bool progressive) {
   bool changed = false;
   float budget = static_cast<float>(settings.selection.pointBudget);
-  if (ImGui::SliderFloat("points", &budget, kLeastBudget, kMostBudget,
+  if (ImGui::SliderFloat("point budget", &budget, kLeastBudget, kMostBudget,
                          readableCount(static_cast<double>(budget)).c_str(),
                          ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoInput)) {
     settings.selection.pointBudget = static_cast<std::uint64_t>(std::llround(budget));
     changed = true;
   }
   float density = static_cast<float>(settings.selection.pointsPerPixel);
-  if (ImGui::SliderFloat("a pixel", &density, 0.05f, 8.0f, "%.2f points", ImGuiSliderFlags_Logarithmic)) {
+  if (ImGui::SliderFloat("detail", &density, 0.05f, 8.0f, "%.2f points a pixel", ImGuiSliderFlags_Logarithmic)) {
     settings.selection.pointsPerPixel = static_cast<double>(density);
     changed = true;
   }
-  changed = ImGui::SliderInt("size", &settings.draw.pointSize, 1, 8, "%d px") || changed;
+  changed = ImGui::SliderInt("point size", &settings.draw.pointSize, 1, 8, "%d px") || changed;
   changed = drawColour(settings.draw, limits, progressive) || changed;
   bool blended = settings.draw.shading == Shading::highQuality;
   ImGui::BeginDisabled(progressive);

@@ -199,6 +199,8 @@ struct Window::Parts {
     ImGui::GetIO().UserData = &places;
     ImGui::StyleColorsDark();
     ImGui::GetStyle().WindowRounding = 6.0f;
+    ImGui::GetStyle().FrameRounding = 3.0f;
+    ImGui::GetStyle().Colors[ImGuiCol_PopupBg].w = 1.0f;  // a list's items are read, not what lies behind them
     const float scale = contentScale(window);
     ImGui::GetStyle().ScaleAllSizes(scale);
     ImFontConfig font;
