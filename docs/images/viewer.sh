@@ -21,7 +21,8 @@ until_it_says() {
 }
 settle() { sleep 0.5 && until_it_says '"settled":true'; }
 focus() { settle && xdotool windowfocus "$(xdotool search --onlyvisible --name Strata | head -n 1)" && until_it_says '"focused":true'; }
-shot() { settle && ffmpeg -loglevel error -y -f x11grab -draw_mouse 1 -video_size 1280x800 -i "$DISPLAY" -frames:v 1 -vf scale=960:-1 -q:v 5 "$out/$1.jpg" </dev/null; }
+# shot NAME [WIDTH:HEIGHT:X:Y], of the screen
+shot() { settle && ffmpeg -loglevel error -y -f x11grab -draw_mouse 1 -video_size 1280x800 -i "$DISPLAY" -frames:v 1 -vf "crop=${2:-1280:800:0:0},scale=iw*3/4:-1" -q:v 5 "$out/$1.jpg" </dev/null; }
 key() { xdotool key "$1" && settle; }
 click() { xdotool mousemove "$1" "$2" click 1 && settle; }
 item() { click $(sed -n 's/.*"'"$1"'":\[\([0-9]*\)[0-9.]*,\([0-9]*\)[0-9.]*\].*/\1 \2/p' state.json); }
@@ -33,7 +34,7 @@ rm -rf made.strata
 "$bin/strata-view" city.laz --size 1280x800 --state state.json &
 viewer=$!
 focus
-shot viewer-convert
+shot viewer-convert 640:200:320:300
 item convert || true  # the window goes away
 until_it_says '"drawn":[1-9]'
 focus
