@@ -163,7 +163,7 @@ class Targets:
 
 def targets(folder):
     t = Targets(folder)
-    las = r"^\| \S+ \| LAS \| \S+ \| \S+ s \| (\S+) M \| (\S+) µs \| \S+ GiB \| \S+ GB \((\S+)\) \| (\S+) \|"
+    las = r"^\| \S+ \| LAS \|(?: \d+[KMGT]? \|)? \S+ s \| (\S+) M \| (\S+) µs \| \S+ GiB \| \S+ GB \((\S+)\) \| (\S+) \|"
     t.judge("convert LAS, largest size", t.find("conversion", las, 1, True), 5, 9, " M points/s", True)
     t.judge("convert LAS, CPU a point", t.find("conversion", las, 2, True), 0.38, 0.38, " µs")
     t.judge("temporary disk against the plain input", t.find("conversion", las, 3, True), 1.0, 0.5, " x")
