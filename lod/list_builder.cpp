@@ -62,13 +62,15 @@ std::uint32_t shownEnd(const PlaneEnds& ends, ColourMode shown) {
 
 std::uint32_t ListBuilder::bytesNeeded(const NodeRecord& record, const StreamedNode& present,
                                        Precision precision) const {
-  if (!shown_) return drawBytes(record, precision);
+  const std::uint32_t normals = normals_ ? present.ends.normal : 0;
+  if (!shown_) return std::max(drawBytes(record, precision), normals);
   const auto plane = static_cast<std::size_t>(precision) - 1;
-  return std::max(present.ends.position[plane], shownEnd(present.ends, *shown_));
+  return std::max({present.ends.position[plane], shownEnd(present.ends, *shown_), normals});
 }
 
 std::uint32_t ListBuilder::bytesAtMost(const NodeRecord& record, Precision precision) const {
-  const bool isLate = shown_ == ColourMode::returnNumber || shown_ == ColourMode::normal;  // after all positions
+  // After all positions.
+  const bool isLate = normals_ || shown_ == ColourMode::returnNumber || shown_ == ColourMode::normal;
   return isLate ? record.payloadBytes : drawBytes(record, precision);
 }
 
@@ -122,11 +124,14 @@ void ListBuilder::lookAhead(const Selection& selection, const FailedNodes::ByNod
   }
 }
 
-ListBuilder::Result ListBuilder::build(const Selection& selection, std::optional<ColourMode> shown,
+ListBuilder::Result ListBuilder::build(const Selection& selection, const SelectionOptions& options,
                                        const FailedNodes::ByNode& failed, PinnedList& out,
                                        std::vector<LoadRequest>& requests) {
   Result result;
-  shown_ = shown;
+  shown_ = options.shown;
+  const PointLayout& layout = store_.info().layout;
+  normals_ =
+      options.normals && (layout.find(attribute::kNormal) >= 0 || layout.find(attribute::kNormalOctahedral) >= 0);
   requests.clear();
   drawn_.clear();
   result.overCapacity = takeWhatFits(selection);

@@ -37,7 +37,7 @@ class ListBuilder {
 
   /// Fills `out.list.items` and `out.pins`, which must be empty, and replaces `requests`. A node is drawn when it and
   /// all its ancestors are resident. Nodes out of tries, and all below them, are not asked for again.
-  Result build(const Selection& selection, std::optional<ColourMode> shown, const FailedNodes::ByNode& failed,
+  Result build(const Selection& selection, const SelectionOptions& options, const FailedNodes::ByNode& failed,
                PinnedList& out, std::vector<LoadRequest>& requests);
 
   /// After build(): adds requests for what another selection, of a view to come, wants beyond it, as far as the cache
@@ -62,8 +62,9 @@ class ListBuilder {
   const Precision leastPrecision_;
   NodeCache& cache_;
 
-  std::optional<ColourMode> shown_;
-  double share_ = 1.0;  ///< of bytesAtMost() that nodes needed at most, of those that are wanted and here
+  std::optional<ColourMode> shown_;  ///< SelectionOptions::shown
+  bool normals_ = false;             ///< ... and normals, in a store that has them
+  double share_ = 1.0;               ///< of bytesAtMost() that nodes needed at most, of those that are wanted and here
 
   enum Mark : std::uint32_t { kDrawn, kBlocked, kMissing, kMarks };
   std::uint32_t pass_ = 0;

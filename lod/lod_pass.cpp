@@ -46,7 +46,7 @@ LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Pin
   selectNodes(store_.hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
   failed.copyIfNewer(failures_, failuresVersion_);
   step.next("build the list");
-  Result result{builder_.build(selection_, task.selection.shown, failures_, out, requests), selection_.occluded,
+  Result result{builder_.build(selection_, task.selection, failures_, out, requests), selection_.occluded,
                 depth != nullptr ? depth->drawn() : 0};
   out.list.view = task.view;
   if (task.ahead) {

@@ -24,6 +24,7 @@ struct SelectionOptions {
   OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
   /// What the streamer reads of a node beside its positions: what this shows. Nothing: colour, intensity and class.
   std::optional<ColourMode> shown{};
+  bool normals = false;  ///< ... and the normals, where the store has them
   Clip clip{};  ///< nodes of which nothing is left by it are not drawn, read or counted; it does not cut the others
 
   bool operator==(const SelectionOptions&) const = default;

@@ -74,6 +74,7 @@ std::optional<ColourMode> shownBy(const DrawOptions& draw) {
 bool followDrawing(const DrawOptions& draw, SelectionOptions& selection) {
   const SelectionOptions before = selection;
   selection.shown = shownBy(draw);
+  selection.normals = draw.jumpFlood;
   selection.clip = draw.clip;
   return !(selection == before);
 }

@@ -45,6 +45,7 @@ struct TerrainOptions {
   int levels = 4;     ///< of a full quadtree over the ground
   int side = 16;      ///< a node keeps side x side points
   int cubeBits = 20;  ///< the cube spans 2^cubeBits millimetres
+  bool normals = false;
 };
 
 /// Hierarchy (and payloads, if asked for) of a flat, slightly rough ground: a quadtree with all its points in the
@@ -61,9 +62,12 @@ inline StoreInfo terrainInfo(const TerrainOptions& options) {
   info.grid.offset = {400000.0, 5600000.0, 100.0};
   info.cubeBits = options.cubeBits;
   info.levels = options.levels;
-  info.layout = PointLayout({{std::string(attribute::kRgb), ScalarType::u16, 3, "", 1.0, 0.0},
-                             {std::string(attribute::kIntensity), ScalarType::u16, 1, "", 1.0, 0.0}});
-  info.ranges.resize(2);
+  std::vector<Attribute> attributes{{std::string(attribute::kRgb), ScalarType::u16, 3, "", 1.0, 0.0},
+                                    {std::string(attribute::kIntensity), ScalarType::u16, 1, "", 1.0, 0.0}};
+  if (options.normals)
+    attributes.push_back({std::string(attribute::kNormalOctahedral), ScalarType::u8, 2, "", 1.0, 0.0});
+  info.ranges.resize(attributes.size());
+  info.layout = PointLayout(std::move(attributes));
   info.colourShift = 8;
   info.bounds = info.rootCube();
   return info;

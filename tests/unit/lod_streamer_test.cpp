@@ -225,6 +225,27 @@ TEST(Streamer, ReadsOnlyWhatIsShownAndTheRestWhenThatChanges) {
   EXPECT_LE(streamer.stats().bytesRead, without) << "nothing is read twice";
 }
 
+TEST(Streamer, ReadsNormalsWhereTheyAreAskedForAndThere) {
+  for (const bool has : {false, true}) {
+    const Terrain made = makeTerrain({.levels = 5, .cubeBits = 18, .normals = has}, true);
+    StreamerOptions options;
+    options.selection.shown = ColourMode::rgb;
+    Streamer streamer(makeStore(made), options);
+    streamer.setView(viewOfTerrain(made.info, 0.5, 0.3, 60.0));
+    ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+    for (const RenderItem& item : streamer.beginFrame().items) EXPECT_TRUE(item.node->normal.empty());
+    const std::uint64_t without = streamer.stats().bytesRead;
+    options.selection.normals = true;
+    streamer.setSelection(options.selection);
+    ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+    for (const RenderItem& item : streamer.beginFrame().items) {
+      EXPECT_EQ(item.node->normal.size(), has ? item.node->pointCount() : 0u);
+      EXPECT_EQ(item.node->colour.size(), item.node->pointCount());
+    }
+    EXPECT_EQ(streamer.stats().bytesRead > without, has);
+  }
+}
+
 TEST(Streamer, DrawsParentsWhileChildrenAreOnTheirWay) {
   Gate gate;
   // The root's payload is one read; everything after it waits.
