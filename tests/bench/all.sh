@@ -6,10 +6,11 @@
 #            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
 #   -q       quick: everything a hundredth, only to see that it works
 #   SECTION  machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights
-#            real largest larger targets; default: all but larger and largest
+#            real filling largest larger targets; default: all but larger and largest
 # Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M:1G" (points[:--memory]), CITY=50e6 and ROOM=20e6 (points
 # of the stores that are flown through), LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers),
-# KANZOK_SCALE=SCALE, REPEAT=3 (flights), VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through).
+# KANZOK_SCALE=SCALE, REPEAT=3 (flights), VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through),
+# FILLED=16e6 (points of the city whose holes are filled).
 # RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
 # Disk: larger takes 48 bytes a point of one scan at a time; what earlier calls measured into the same FOLDER stays in its
 # tables, so it may be run scan by scan. largest takes 21 bytes a point: 1e9 points fit 25 GB, 2e9 fit 45 GB.
@@ -27,11 +28,11 @@ while getopts b:d:o:q option; do
 done
 shift $((OPTIND - 1))
 sections=("$@")
-[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights real targets)
+[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights real filling targets)
 if [ $quick = 1 ]; then
-  : "${CONVERT:=100k}" "${LARGER:=200k 300k:512M}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
+  : "${FILLED:=200e3}" "${CONVERT:=100k}" "${LARGER:=200k 300k:512M}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
-: "${CONVERT:=10M 50M}" "${LARGER:=200M 500M:1G}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${PROGRESSIVE:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
+: "${FILLED:=16e6}" "${CONVERT:=10M 50M}" "${LARGER:=200M 500M:1G}" "${CITY:=50e6}" "${ROOM:=20e6}" "${LARGEST:=500e6}" "${RASTER:=10}" "${PROGRESSIVE:=10}" "${SCALE:=0.02}" "${REPEAT:=3}" "${VIEWS:=30}" "${FLOWN:=3e6}" "${NODES:=2000000}"
 : "${KANZOK_SCALE:=$SCALE}" "${RED_ROCKS:=$root/../shared/data/laz/large/red_rocks_4.0M.laz}"
 export PATH=$build/bin:$build/tests:$PATH
 if [ -z "$folder" ]; then
@@ -187,6 +188,10 @@ largest() {
   fi
   [ ! -s "$folder/largest.json" ] || table conversion "$folder/largest.json" "$folder"
   described "The largest city" largest
+}
+filling() {
+  [ -e "$RED_ROCKS" ] || echo "Not measured: $RED_ROCKS is not there."
+  STRATA_BIN=$build/bin "$root/tests/bench/fill_quality.sh" "$([ ! -e "$RED_ROCKS" ] || echo "$RED_ROCKS")" "$folder/filled" "$FILLED"
 }
 targets() { table targets "$folder/sections"; }
 

@@ -1,15 +1,16 @@
 // How well holes are filled: a scan thinned at random, drawn and filled in several ways, against the picture of the
 // whole scan. docs/effects.md has the results.
-//   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]   PSNR, SSIM, covered and wrongly filled pixels
-//   fill_quality times NAME.strata VIEWS.json [KEPT...]          milliseconds of each step
-//   fill_quality steadiness NAME.strata VIEWS.json [KEPT...]     difference of successive frames
+//   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]   PSNR, SSIM, covered and wrongly filled pixels, first
+//   view fill_quality times NAME.strata VIEWS.json [KEPT...]          milliseconds of each step fill_quality steadiness
+//   NAME.strata VIEWS.json [KEPT...]     difference of successive frames
 // VIEWS.json is a camera path, each of its keys a view. KEPT are the shares of points that remain, such as 0.25. OUT is
-// a folder; it gets fill.tsv and the pictures.
+// a folder; it gets the pictures. Tables are printed.
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,10 @@
 #include "io/node_codec.h"
 #include "io/store.h"
 #include "render/flood_fill.h"
+#include "render/gl_context.h"
+#include "render/gl_flood.h"
 #include "render/rasterizer.h"
+#include "render/stopwatch.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/mean_picture.h"
 #include "tests/support/picture_quality.h"
@@ -28,9 +32,10 @@ namespace strata::test {
 namespace {
 
 constexpr int kWidth = 1200, kHeight = 800;  // Farias 2014, 5.1
-constexpr int kTimedFrames = 5;
-constexpr int kSteadyFrames = 6;
-constexpr double kStepPixels = 0.6;  ///< that the target moves by from frame to frame
+constexpr int kTimedFrames = 3;
+constexpr int kSteadyFrames = 4;
+constexpr std::size_t kJudgedViews = 1;  ///< of the pictures: judging them takes longest
+constexpr double kStepPixels = 0.6;      ///< that the target moves by from frame to frame
 
 /// Every node of a store with all that its payload holds, normals too.
 RenderList readWhole(const Store& store) {
@@ -76,6 +81,7 @@ struct Way {
   int window = 1;
   bool flood = false;
   FloodSettings settings{};
+  bool steadied = false;  ///< judged in motion, too
 };
 
 std::vector<Way> waysOf(const Store& store) {
@@ -99,7 +105,9 @@ std::vector<Way> waysOf(const Store& store) {
   settings.useNormals = false;
   ways.push_back({"the same without normals", 1, true, settings});
   settings.estimateNormals = true;
-  ways.push_back({"with normals of the neighbourhood", 1, true, settings});
+  ways.push_back({"with normals of the neighbourhood (jump-flood)", 1, true, settings});
+  for (Way& way : ways)
+    way.steadied = !way.flood || way.name == "paper 0.003" || way.name == "paper 0.01" || &way == &ways.back();
   return ways;
 }
 
@@ -117,111 +125,174 @@ std::string fileName(std::string name) {
   return name;
 }
 
-void pictures(const std::string& out, const std::string& path, const std::string& viewsFile,
+/// What ways of filling make of thinned scans, against the picture of all points: one column a share.
+void pictures(const std::string& out, const Store& store, const std::vector<View>& views,
               const std::vector<double>& kept) {
-  const Store store(path);
   const RenderList whole = readWhole(store);
   const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
   const ThreadPool pool(0);
-  const std::vector<View> views = readViews(viewsFile);
-  std::ofstream table(out + "/fill.tsv");
-  if (!table) throw Error(out + "/fill.tsv", "cannot be written");
-  table << "view\tkept\tway\tcovered\twrong\tpsnr\tssim\tms\n";
+  const std::vector<Way> ways = waysOf(store);
   for (std::size_t v = 0; v < views.size(); ++v) {
     const MeanPicture reference = meanPicture(whole, views[v]);
     Frame full;
     rasterizer->draw(whole, views[v], {}, full);
     const std::string view = out + "/view" + std::to_string(v);
     writePng(view + "_all.png", imageOf(reference));
+    std::vector<std::string> rows;
+    for (const Way& way : ways) rows.push_back("| " + way.name + " |");
+    std::cout << "| view " << v << ": covered, wrong, PSNR, SSIM |";
     for (const double share : kept) {
+      std::cout << ' ' << share << " of " << whole.pointCount << " points |";
       const RenderList thin = thinned(whole, share, 1);
-      for (const Way& way : waysOf(store)) {
+      for (std::size_t i = 0; i < ways.size(); ++i) {
+        const Way& way = ways[i];
         DrawOptions options;
         options.fill = way.window;
         Frame frame;
         rasterizer->draw(thin, views[v], options, frame);
-        FloodStats stats;
-        if (way.flood) stats = floodFill(thin, views[v], way.settings, pool, frame);
+        if (way.flood) floodFill(thin, views[v], way.settings, pool, frame);
         const FillJudgement judged = judgeFill(full, frame);
         const PictureQuality quality = pictureQuality(reference, frame);
-        table << v << '\t' << share << '\t' << way.name << '\t' << judged.covered << '\t' << judged.wrong << '\t'
-              << quality.psnr << '\t' << quality.ssim << '\t'
-              << stats.projectMs + stats.layersMs + stats.neighboursMs + stats.renderMs << std::endl;
-        std::ostringstream name;
+        std::ostringstream cell, name;
+        cell << std::fixed << std::setprecision(2) << ' ' << 100.0 * judged.covered << " %, " << 100.0 * judged.wrong
+             << " %, " << quality.psnr << " dB, " << std::setprecision(3) << quality.ssim << " |";
+        rows[i] += cell.str();
         name << view << "_" << share << "_" << fileName(way.name) << ".png";
         writePng(name.str(), {frame.width, frame.height, frame.colour});
       }
     }
+    std::cout << "\n|---|";
+    for (std::size_t i = 0; i < kept.size(); ++i) std::cout << "---|";
+    std::cout << '\n';
+    for (const std::string& row : rows) std::cout << row << '\n';
+    std::cout << std::endl;
   }
 }
 
-/// As Table 5.2 of Farias 2014: milliseconds of each step.
-void times(const std::string& path, const std::string& viewsFile, const std::vector<double>& kept) {
-  const RenderList whole = readWhole(Store(path));
-  const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
-  const ThreadPool pool(0);
-  std::cout << "| view | points | seeds | splats | draw | projection | layers | neighbours | splats drawn | total |\n"
-               "|---|---|---|---|---|---|---|---|---|---|\n"
-            << std::fixed << std::setprecision(1);
-  const std::vector<View> views = readViews(viewsFile);
-  for (std::size_t v = 0; v < views.size(); ++v)
-    for (const double share : kept) {
-      const RenderList thin = thinned(whole, share, 1);
-      FloodStats sum;
-      double drawMs = 0.0;
-      for (int i = 0; i < kTimedFrames; ++i) {
-        Frame frame;
-        const DrawStats drawn = rasterizer->draw(thin, views[v], {}, frame);
-        drawMs += drawn.drawMs + drawn.resolveMs;
-        const FloodStats one = floodFill(thin, views[v], {}, pool, frame);
-        sum.seeds = one.seeds;
-        sum.splats = one.splats;
-        sum.projectMs += one.projectMs;
-        sum.layersMs += one.layersMs;
-        sum.neighboursMs += one.neighboursMs;
-        sum.renderMs += one.renderMs;
-      }
-      const auto mean = [](double ms) { return ms / kTimedFrames; };
-      std::cout << "| " << v << " | " << thin.pointCount << " | " << sum.seeds << " | " << sum.splats << " | "
-                << mean(drawMs) << " | " << mean(sum.projectMs) << " | " << mean(sum.layersMs) << " | "
-                << mean(sum.neighboursMs) << " | " << mean(sum.renderMs) << " | "
-                << mean(drawMs + sum.projectMs + sum.layersMs + sum.neighboursMs + sum.renderMs) << " |" << std::endl;
-    }
+/// Milliseconds of each step, means of several frames, the first of which does not count.
+struct StepTimes {
+  FloodStats sum;
+  double wholeMs = 0.0;
+};
+
+template <typename Fill>
+StepTimes timesOf(const Frame& drawn, Fill fill) {
+  StepTimes times;
+  for (int i = -1; i < kTimedFrames; ++i) {
+    Frame frame = drawn;
+    Stopwatch watch;
+    const FloodStats one = fill(frame);
+    if (i < 0) continue;
+    times.wholeMs += watch.lapMs() / kTimedFrames;
+    times.sum.seeds = one.seeds;
+    times.sum.splats = one.splats;
+    times.sum.projectMs += one.projectMs / kTimedFrames;
+    times.sum.layersMs += one.layersMs / kTimedFrames;
+    times.sum.neighboursMs += one.neighboursMs / kTimedFrames;
+    times.sum.renderMs += one.renderMs / kTimedFrames;
+  }
+  return times;
 }
 
-/// How much successive frames differ along a slow path that goes by each view, see flicker().
-void steadiness(const std::string& path, const std::string& viewsFile, const std::vector<double>& kept) {
-  const Store store(path);
+/// As Table 5.2 of Farias 2014: on the CPU, and by compute shaders where there is an OpenGL.
+void times(const Store& store, const std::vector<View>& views, const std::vector<double>& kept) {
   const RenderList whole = readWhole(store);
   const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
   const ThreadPool pool(0);
-  std::cout << "view\tkept\tway\tflicker" << std::endl;
-  const std::vector<View> views = readViews(viewsFile);
+  std::unique_ptr<GlContext> context;
+  GlFunctions gl;
+  std::unique_ptr<GlFlood> flood;
+  std::string device;
+  try {
+    context = createHeadlessContext();
+    context->makeCurrent();
+    gl = loadGlFunctions(*context);
+    device = glRenderer(gl);
+    flood = std::make_unique<GlFlood>(gl, isSoftwareRenderer(device) ? 8 : 128);
+  } catch (const Error& error) {
+    std::cout << "No OpenGL: " << error.what() << "\n\n";
+  }
+  std::cout
+      << "| view | size | points | on | seeds | splats | projection | layers | neighbours | splats drawn | all |\n"
+         "|---|---|---|---|---|---|---|---|---|---|---|\n"
+      << std::fixed << std::setprecision(1);
+  const auto row = [&](std::size_t v, const View& view, std::uint64_t points, const std::string& on,
+                       const StepTimes& t) {
+    std::cout << "| " << v << " | " << view.width << "x" << view.height << " | " << points << " | " << on << " | ";
+    if (t.sum.seeds > 0)
+      std::cout << t.sum.seeds << " | " << t.sum.splats;
+    else
+      std::cout << "- | -";
+    std::cout << " | " << t.sum.projectMs << " | " << t.sum.layersMs << " | " << t.sum.neighboursMs << " | "
+              << t.sum.renderMs << " | " << t.wholeMs << " |" << std::endl;
+  };
   for (std::size_t v = 0; v < views.size(); ++v)
-    for (const double share : kept) {
-      const RenderList thin = thinned(whole, share, 1);
-      for (const Way& way : waysOf(store)) {
+    for (const auto& [width, height] : {std::pair{kWidth, kHeight}, {1280, 720}})
+      for (const double share : kept) {
+        View view = views[v];
+        view.width = width;
+        view.height = height;
+        const RenderList thin = thinned(whole, share, 1);
+        Frame drawn;
+        rasterizer->draw(thin, view, {}, drawn);
+        row(v, view, thin.pointCount, "CPU",
+            timesOf(drawn, [&](Frame& frame) { return floodFill(thin, view, {}, pool, frame); }));
+        if (flood == nullptr || width != kWidth) continue;
+        row(v, view, thin.pointCount, "OpenGL",
+            timesOf(drawn, [&](Frame& frame) { return flood->fill(thin, view, {}, pool, frame); }));
+      }
+  if (flood != nullptr) std::cout << "\nOpenGL: " << device << '\n';
+  flood.reset();
+}
+
+/// How much successive frames differ along a slow path that goes by each view, see flicker().
+void steadiness(const Store& store, const std::vector<View>& views, const std::vector<double>& kept) {
+  const RenderList whole = readWhole(store);
+  const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
+  const ThreadPool pool(0);
+  std::vector<Way> ways = waysOf(store);
+  std::erase_if(ways, [](const Way& way) { return !way.steadied; });
+  std::vector<RenderList> thin;
+  for (const double share : kept) thin.push_back(thinned(whole, share, 1));
+  std::vector<std::string> rows;
+  for (const Way& way : ways) rows.push_back("| " + way.name + " |");
+  std::cout << "| mean difference, of 255 |";
+  for (std::size_t v = 0; v < views.size(); ++v) {
+    // The path of one view, and what of all points it shows: the same for every way.
+    std::vector<View> path;
+    std::vector<Frame> full(kSteadyFrames);
+    const double pixel = glm::length(views[v].target - views[v].eye) / pixelsAt(views[v], 1.0, 1.0);
+    for (int i = 0; i < kSteadyFrames; ++i) {
+      const glm::dvec3 by = static_cast<double>(i) * kStepPixels * pixel * viewBasis(views[v]).right;
+      path.push_back(views[v]);
+      path.back().eye += by;
+      path.back().target += by;
+      rasterizer->draw(whole, path.back(), {}, full[static_cast<std::size_t>(i)]);
+    }
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      std::cout << " view " << v << ", " << kept[k] << " |";
+      for (std::size_t w = 0; w < ways.size(); ++w) {
         DrawOptions options;
-        options.fill = way.window;
-        View view = views[v], before;
-        const double pixel = glm::length(view.target - view.eye) / pixelsAt(view, 1.0, 1.0);
-        const glm::dvec3 step = kStepPixels * pixel * viewBasis(view).right;
-        Frame full, fullBefore, frame, frameBefore;
+        options.fill = ways[w].window;
+        Frame frame, before;
         double sum = 0.0;
-        for (int i = 0; i < kSteadyFrames; ++i) {
-          rasterizer->draw(whole, view, {}, full);
-          rasterizer->draw(thin, view, options, frame);
-          if (way.flood) floodFill(thin, view, way.settings, pool, frame);
-          if (i > 0) sum += flicker(full, view, frame, fullBefore, before, frameBefore);
-          std::swap(full, fullBefore);
-          std::swap(frame, frameBefore);
-          before = view;
-          view.eye += step;
-          view.target += step;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+          rasterizer->draw(thin[k], path[i], options, frame);
+          if (ways[w].flood) floodFill(thin[k], path[i], ways[w].settings, pool, frame);
+          if (i > 0) sum += flicker(full[i], path[i], frame, full[i - 1], path[i - 1], before);
+          std::swap(frame, before);
         }
-        std::cout << v << '\t' << share << '\t' << way.name << '\t' << sum / (kSteadyFrames - 1) << std::endl;
+        std::ostringstream cell;
+        cell << std::fixed << std::setprecision(1) << ' ' << sum / (kSteadyFrames - 1) << " |";
+        rows[w] += cell.str();
       }
     }
+  }
+  std::cout << "\n|---|";
+  for (std::size_t i = 0; i < views.size() * kept.size(); ++i) std::cout << "---|";
+  std::cout << '\n';
+  for (const std::string& row : rows) std::cout << row << '\n';
+  std::cout << std::endl;
 }
 
 std::vector<double> shares(const std::vector<std::string>& arguments, std::size_t first) {
@@ -233,11 +304,13 @@ std::vector<double> shares(const std::vector<std::string>& arguments, std::size_
 int run(const std::vector<std::string>& arguments) {
   if (arguments.size() >= 4 && arguments[0] == "pictures") {
     std::filesystem::create_directories(arguments[1]);
-    pictures(arguments[1], arguments[2], arguments[3], shares(arguments, 4));
+    std::vector<View> views = readViews(arguments[3]);
+    views.resize(std::min<std::size_t>(views.size(), kJudgedViews));
+    pictures(arguments[1], Store(arguments[2]), views, shares(arguments, 4));
   } else if (arguments.size() >= 3 && arguments[0] == "times") {
-    times(arguments[1], arguments[2], shares(arguments, 3));
+    times(Store(arguments[1]), readViews(arguments[2]), shares(arguments, 3));
   } else if (arguments.size() >= 3 && arguments[0] == "steadiness") {
-    steadiness(arguments[1], arguments[2], shares(arguments, 3));
+    steadiness(Store(arguments[1]), readViews(arguments[2]), shares(arguments, 3));
   } else {
     throw UsageError("pictures OUT STORE VIEWS, times STORE VIEWS or steadiness STORE VIEWS is expected");
   }

@@ -266,8 +266,9 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
   const std::string text = readWhole(page);
   EXPECT_NE(text.find("**Machine**: "), std::string::npos);
   EXPECT_NE(text.find("| convert LAS, largest size | not measured | 5 M points/s | 9 M points/s |"), std::string::npos);
-  for (const char* section : {"machine", "targets", "conversion", "store", "selection", "streaming", "rasterizers",
-                              "progressive", "kanzok", "schuetz", "guenther", "flights", "real", "largest", "larger"}) {
+  for (const char* section :
+       {"machine", "targets", "conversion", "store", "selection", "streaming", "rasterizers", "progressive", "kanzok",
+        "schuetz", "guenther", "flights", "real", "filling", "largest", "larger"}) {
     const std::string name = section;
     const std::size_t begin = text.find("<!-- " + name + ": tests/bench/all.sh " + name + " -->");
     ASSERT_NE(begin, std::string::npos) << name;
