@@ -24,7 +24,7 @@ float uiScale() { return ImGui::GetFontSize() / kOrdinaryLetters; }
 
 void overlayLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour, float widthPx) {
   if (const auto segment = segmentOnScreen(view, a, b))
-    ImGui::GetBackgroundDrawList()->AddLine(at(segment->first), at(segment->second), colour, widthPx);
+    ImGui::GetBackgroundDrawList()->AddLine(at(segment->first), at(segment->second), colour, widthPx * uiScale());
 }
 
 void overlayRimmedLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour) {
@@ -35,13 +35,14 @@ void overlayRimmedLine(const View& view, const glm::dvec3& a, const glm::dvec3& 
 void overlayDot(const View& view, const glm::dvec3& place, std::uint32_t colour, float radiusPx) {
   if (!isBefore(view, place)) return;
   ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  canvas->AddCircleFilled(at(pixelOf(view, place)), radiusPx + 1.5f, kOverlayShade);
-  canvas->AddCircleFilled(at(pixelOf(view, place)), radiusPx, colour);
+  canvas->AddCircleFilled(at(pixelOf(view, place)), (radiusPx + 1.5f) * uiScale(), kOverlayShade);
+  canvas->AddCircleFilled(at(pixelOf(view, place)), radiusPx * uiScale(), colour);
 }
 
 void overlayRing(const View& view, const glm::dvec3& place, std::uint32_t colour, float radiusPx) {
   if (isBefore(view, place))
-    ImGui::GetBackgroundDrawList()->AddCircle(at(pixelOf(view, place)), radiusPx, colour, 0, 2.0f);
+    ImGui::GetBackgroundDrawList()->AddCircle(at(pixelOf(view, place)), radiusPx * uiScale(), colour, 0,
+                                              2.0f * uiScale());
 }
 
 void overlayText(const View& view, const glm::dvec3& place, const std::string& text, std::uint32_t colour) {

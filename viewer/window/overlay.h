@@ -9,7 +9,8 @@
 namespace strata {
 
 // Lines, dots and texts over the picture and below the panels, at places of the scan; between Window::beginFrame() and
-// finishFrame(). Colours are R | G<<8 | B<<16 | A<<24. What lies behind the eye is not drawn.
+// finishFrame(). Colours are R | G<<8 | B<<16 | A<<24. What lies behind the eye is not drawn. Widths and radii are
+// pixels on an ordinary screen.
 
 /// How much larger letters are than on an ordinary screen; sizes of panels go with it.
 float uiScale();

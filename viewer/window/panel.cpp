@@ -280,8 +280,9 @@ void drawSpinner(const ViewerStats& stats) {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float turn = static_cast<float>(4.0 * std::fmod(ImGui::GetTime(), std::numbers::pi / 2.0));
   ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  canvas->PathArcTo(ImVec2(size.x - 28.0f, size.y - 28.0f), 9.0f, turn, turn + 4.5f);
-  canvas->PathStroke(IM_COL32(255, 255, 255, 110), 0, 2.5f);
+  const float unit = uiScale();
+  canvas->PathArcTo(ImVec2(size.x - 28.0f * unit, size.y - 28.0f * unit), 9.0f * unit, turn, turn + 4.5f);
+  canvas->PathStroke(IM_COL32(255, 255, 255, 110), 0, 2.5f * unit);
 }
 
 namespace {

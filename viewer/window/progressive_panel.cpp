@@ -6,16 +6,18 @@
 #include <cmath>
 
 #include "viewer/bench/html_text.h"
+#include "viewer/window/overlay.h"
 
 namespace strata {
 namespace {
 
-constexpr float kWidth = 300.0f;  // pixels
+float panelWidth() { return 300.0f * uiScale(); }
+
 constexpr float kLeastPoints = 1e4f, kMostPoints = 1e8f;
 
 void line(const char* name, const std::string& value) {
   ImGui::TextUnformatted(name);
-  ImGui::SameLine(0.5f * kWidth);
+  ImGui::SameLine(0.5f * panelWidth());
   ImGui::TextUnformatted(value.c_str());
 }
 
@@ -38,10 +40,10 @@ bool drawProgressivePanel(ProgressiveRasterizer& rasterizer) {
   ProgressiveOptions options = rasterizer.options();
   bool changed = false;
   ImGui::SetNextWindowPos(ImVec2(size.x - 12.0f, size.y - 12.0f), ImGuiCond_FirstUseEver, ImVec2(1.0f, 1.0f));
-  ImGui::SetNextWindowSize(ImVec2(kWidth, 0.0f), ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSize(ImVec2(panelWidth(), 0.0f), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowBgAlpha(0.82f);
   if (ImGui::Begin("Progressive", nullptr, ImGuiWindowFlags_NoFocusOnAppearing)) {
-    ImGui::PushItemWidth(0.55f * kWidth);
+    ImGui::PushItemWidth(0.55f * panelWidth());
     changed = pointsSlider("a frame", options.pointsPerFrame);
     changed = pointsSlider("uploaded", options.uploadPerFrame) || changed;
     ImGui::PopItemWidth();
