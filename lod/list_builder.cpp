@@ -16,14 +16,19 @@ constexpr float kUpgradeWeight = 0.25f;
 
 ListBuilder::ListBuilder(const Store& store, std::span<const std::uint32_t> parents, Precision leastPrecision,
                          NodeCache& cache)
-    : store_(store), parents_(parents), leastPrecision_(leastPrecision), cache_(cache), marks_(parents.size(), 0) {}
+    : store_(store),
+      parents_(parents),
+      leastPrecision_(leastPrecision),
+      bytesAPoint_(bytesAPointBound(store.info())),
+      cache_(cache),
+      marks_(parents.size(), 0) {}
 
 std::uint32_t ListBuilder::takeWhatFits(const Selection& selection) {
   wanted_.clear();
   wantedBytes_ = 0;
   std::uint64_t largest = 0;  // room for one node to be there in two versions while it is replaced
   for (const SelectedNode& selected : selection.nodes) {
-    const std::uint64_t bytes = nodeBytesBound(store_.hierarchy().nodes[selected.node], store_.info());
+    const std::uint64_t bytes = nodeBytesBound(store_.hierarchy().nodes[selected.node], bytesAPoint_);
     const std::uint64_t reserve = wanted_.empty() ? 0 : std::max(largest, bytes);
     if (wantedBytes_ + bytes + reserve > cache_.capacityBytes()) break;
     wantedBytes_ += bytes;
@@ -114,7 +119,7 @@ void ListBuilder::lookAhead(const Selection& selection, const FailedNodes::ByNod
   for (const SelectedNode& selected : selection.nodes) {
     const std::uint32_t mark = marks_[selected.node];
     if (mark / kMarks == pass_) continue;  // wanted now
-    bytes += nodeBytesBound(store_.hierarchy().nodes[selected.node], store_.info());
+    bytes += nodeBytesBound(store_.hierarchy().nodes[selected.node], bytesAPoint_);
     if (bytes > cache_.capacityBytes()) return;
     if (failed.contains(selected.node)) continue;
     std::optional<LoadRequest> request = requestFor(selected, cache_.peek(selected.node).get());
@@ -166,7 +171,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const Selecti
     if (request) request->alone = hasFailed;
     if (poor) request->priority *= kUpgradeWeight;
     // While both versions of a node are held there has to be room for both.
-    const bool roomForBoth = poor && wantedBytes_ + nodeBytesBound(record, store_.info()) <= cache_.capacityBytes();
+    const bool roomForBoth = poor && wantedBytes_ + nodeBytesBound(record, bytesAPoint_) <= cache_.capacityBytes();
     if (!resident || roomForBoth) {
       if (!hasFailed || !failure->second.mustWait(now)) {
         requests.push_back(*request);

@@ -60,6 +60,7 @@ class ListBuilder {
   const Store& store_;
   const std::span<const std::uint32_t> parents_;
   const Precision leastPrecision_;
+  const std::uint64_t bytesAPoint_;  ///< of memory, at most
   NodeCache& cache_;
 
   std::optional<ColourMode> shown_;  ///< SelectionOptions::shown

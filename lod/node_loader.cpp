@@ -9,17 +9,6 @@
 namespace strata {
 namespace {
 
-std::uint64_t bytesAPoint(const StoreInfo& info) {
-  std::uint64_t bytes = sizeof(NodeData::position[0][0]) * 3;
-  if (info.layout.find(attribute::kRgb) >= 0) bytes += sizeof(std::uint32_t);
-  if (info.layout.find(attribute::kIntensity) >= 0) bytes += sizeof(std::uint16_t);
-  if (info.layout.find(attribute::kClassification) >= 0) bytes += sizeof(std::uint8_t);
-  if (info.layout.find(attribute::kReturnNumber) >= 0) bytes += sizeof(std::uint8_t);
-  if (info.layout.find(attribute::kNormal) >= 0 || info.layout.find(attribute::kNormalOctahedral) >= 0)
-    bytes += sizeof(std::uint32_t);
-  return bytes;
-}
-
 /// Bytes that are kept of a plane of which not all has been read: what is asked for too much when it is not known where
 /// planes end.
 std::uint64_t mostKept(const NodeRecord& record) { return record.headBytes + record.payloadBytes / 20; }
@@ -45,12 +34,27 @@ Precision usefulPrecision(const NodeRecord& record, Precision wanted) {
   return static_cast<Precision>(planes);
 }
 
-std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
+std::uint64_t bytesAPointBound(const StoreInfo& info) {
+  std::uint64_t bytes = sizeof(NodeData::position[0][0]) * 3;
+  if (info.layout.find(attribute::kRgb) >= 0) bytes += sizeof(std::uint32_t);
+  if (info.layout.find(attribute::kIntensity) >= 0) bytes += sizeof(std::uint16_t);
+  if (info.layout.find(attribute::kClassification) >= 0) bytes += sizeof(std::uint8_t);
+  if (info.layout.find(attribute::kReturnNumber) >= 0) bytes += sizeof(std::uint8_t);
+  if (info.layout.find(attribute::kNormal) >= 0 || info.layout.find(attribute::kNormalOctahedral) >= 0)
+    bytes += sizeof(std::uint32_t);
+  return bytes;
+}
+
+std::uint64_t nodeBytesBound(const NodeRecord& record, std::uint64_t bytesAPoint) {
   const std::uint64_t points = record.pointCount;
   // Batches may be shorter than they could be; twice as many are allowed for, and a few for vectors that grow.
   const std::uint64_t batches = 8 + 2 * ((points + Batch::kMaxPoints - 1) / Batch::kMaxPoints);
-  return sizeof(StreamedNode) + record.headBytes + mostKept(record) + batches * sizeof(Batch) +
-         points * bytesAPoint(info) + OccluderSet::mostOf(points) * sizeof(Occluder);
+  return sizeof(StreamedNode) + record.headBytes + mostKept(record) + batches * sizeof(Batch) + points * bytesAPoint +
+         OccluderSet::mostOf(points) * sizeof(Occluder);
+}
+
+std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
+  return nodeBytesBound(record, bytesAPointBound(info));
 }
 
 std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_token stop) {

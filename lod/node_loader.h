@@ -16,7 +16,10 @@ namespace strata {
 /// The least precision that draws as well as `wanted`: planes that hold nothing for this node are not asked for.
 Precision usefulPrecision(const NodeRecord& record, Precision wanted);
 
+/// The most bytes of memory a point of the store's nodes takes.
+std::uint64_t bytesAPointBound(const StoreInfo& info);
 /// The most bytes of memory a node takes when loaded by NodeLoader, at any precision.
+std::uint64_t nodeBytesBound(const NodeRecord& record, std::uint64_t bytesAPoint);
 std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info);
 
 /// Reads and decodes nodes. One loader thread uses it; it keeps its buffers for the next node.
