@@ -116,6 +116,9 @@ streaming() {
   printf '\nThe loaders against plain reading, page cache warm (`loaders`):\n\n'
   streaming_bench loaders "$folder/room.strata"
   # shellcheck disable=SC2016
+  printf '\nReading alone, every node of the room once in a random order (`read_bench`):\n\n'
+  read_bench "$folder/room.strata"
+  # shellcheck disable=SC2016
   printf '\nOpening a store (`open`):\n\n'
   streaming_bench open "$NODES"
 }
