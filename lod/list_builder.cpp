@@ -130,7 +130,7 @@ void ListBuilder::lookAhead(const Selection& selection, const FailedNodes::ByNod
 }
 
 ListBuilder::Result ListBuilder::build(const Selection& selection, const SelectionOptions& options,
-                                       const FailedNodes::ByNode& failed, PinnedList& out,
+                                       const FailedNodes::ByNode& failed, Fade& fade, PinnedList& out,
                                        std::vector<LoadRequest>& requests) {
   Result result;
   shown_ = options.shown;
@@ -148,6 +148,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const Selecti
   const std::uint32_t drawn = pass_ * kMarks + kDrawn;
   const std::uint32_t blocked = pass_ * kMarks + kBlocked;
   const std::uint32_t missing = pass_ * kMarks + kMissing;
+  const std::uint32_t missingLast = missing - kMarks, blockedLast = blocked - kMarks;
   out.list.pointCount = 0;
   out.list.missingNodes = result.overCapacity;
   out.list.coarseNodes = 0;
@@ -186,10 +187,11 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const Selecti
       ++out.list.missingNodes;
       continue;
     }
-    marks_[wanted.node] = drawn;
+    const std::uint32_t lastMark = std::exchange(marks_[wanted.node], drawn);
     drawn_.push_back(wanted.node);
     out.list.coarseNodes += poor ? 1 : 0;
-    const std::uint32_t points = std::min(wanted.pointCount, found_[i]->pointCount());
+    const std::uint32_t points = fade.allow(wanted.node, std::min(wanted.pointCount, found_[i]->pointCount()),
+                                            lastMark == missingLast || lastMark == blockedLast);
     out.list.items.push_back({std::move(found_[i]), points});
     out.list.pointCount += points;
   }

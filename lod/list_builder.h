@@ -6,6 +6,7 @@
 
 #include "core/render_list.h"
 #include "io/store.h"
+#include "lod/fade.h"
 #include "lod/failed_nodes.h"
 #include "lod/load_queue.h"
 #include "lod/node_cache.h"
@@ -36,9 +37,10 @@ class ListBuilder {
   ListBuilder(const Store& store, std::span<const std::uint32_t> parents, Precision leastPrecision, NodeCache& cache);
 
   /// Fills `out.list.items` and `out.pins`, which must be empty, and replaces `requests`. A node is drawn when it and
-  /// all its ancestors are resident. Nodes out of tries, and all below them, are not asked for again.
+  /// all its ancestors are resident, with as many points as `fade`, which has begun, allows. Nodes out of tries, and
+  /// all below them, are not asked for again.
   Result build(const Selection& selection, const SelectionOptions& options, const FailedNodes::ByNode& failed,
-               PinnedList& out, std::vector<LoadRequest>& requests);
+               Fade& fade, PinnedList& out, std::vector<LoadRequest>& requests);
 
   /// After build(): adds requests for what another selection, of a view to come, wants beyond it, as far as the cache
   /// has room for both.

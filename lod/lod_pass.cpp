@@ -5,6 +5,12 @@
 #include <glm/glm.hpp>
 
 namespace strata {
+namespace {
+
+/// Until a list with more points of the nodes that are held back.
+constexpr std::chrono::milliseconds kFadeStep{16};
+
+}  // namespace
 
 LodPass::LodPass(const Store& store, const HierarchyIndex& index, Precision leastPrecision, NodeCache& cache,
                  DepthBuffers& depth)
@@ -12,7 +18,8 @@ LodPass::LodPass(const Store& store, const HierarchyIndex& index, Precision leas
       index_(index),
       cache_(cache),
       depth_(depth),
-      builder_(store, index.parent, leastPrecision, cache) {}
+      builder_(store, index.parent, leastPrecision, cache),
+      fade_(store.hierarchy(), index) {}
 
 const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
   const OcclusionOptions& options = task.selection.occlusion;
@@ -38,7 +45,7 @@ const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
   return &depth_.publish();
 }
 
-LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, PinnedList& out,
+LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fade::Time now, PinnedList& out,
                              std::vector<LoadRequest>& requests, TraceLane* lane) {
   TraceScope step(lane, "coarse depth");
   const CoarseDepth* const depth = fillCoarseDepth(task);
@@ -46,8 +53,11 @@ LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Pin
   selectNodes(store_.hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
   failed.copyIfNewer(failures_, failuresVersion_);
   step.next("build the list");
-  Result result{builder_.build(selection_, task.selection, failures_, out, requests), selection_.occluded,
-                depth != nullptr ? depth->drawn() : 0};
+  fade_.begin(task.selection.fadeSeconds, now);
+  Result result{builder_.build(selection_, task.selection, failures_, fade_, out, requests), selection_.occluded,
+                depth != nullptr ? depth->drawn() : 0, fade_.held()};
+  fade_.end(task.view, selection_.hidden);
+  if (result.fading > 0) result.retryAt = std::min(result.retryAt, now + kFadeStep);
   out.list.view = task.view;
   if (task.ahead) {
     step.next("look ahead");

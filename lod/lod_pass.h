@@ -7,6 +7,7 @@
 #include "core/view.h"
 #include "io/store.h"
 #include "lod/depth_buffers.h"
+#include "lod/fade.h"
 #include "lod/failed_nodes.h"
 #include "lod/hierarchy_index.h"
 #include "lod/list_builder.h"
@@ -32,6 +33,7 @@ class LodPass {
   struct Result : ListBuilder::Result {
     std::uint32_t occluded = 0;   ///< nodes left out, and all below them, as hidden
     std::uint32_t occluders = 0;  ///< pieces of surface behind which they were looked for
+    std::uint32_t fading = 0;     ///< nodes drawn with fewer points than wanted, for now; retryAt is then soon
   };
 
   /// The arguments have to outlive it.
@@ -39,8 +41,8 @@ class LodPass {
           DepthBuffers& depth);
 
   /// Fills `out`, which must be empty but for its memory, and replaces `requests`.
-  Result run(const LodTask& task, const FailedNodes& failed, PinnedList& out, std::vector<LoadRequest>& requests,
-             TraceLane* lane);
+  Result run(const LodTask& task, const FailedNodes& failed, Fade::Time now, PinnedList& out,
+             std::vector<LoadRequest>& requests, TraceLane* lane);
 
  private:
   const CoarseDepth* fillCoarseDepth(const LodTask& task);
@@ -50,6 +52,7 @@ class LodPass {
   NodeCache& cache_;
   DepthBuffers& depth_;
   ListBuilder builder_;
+  Fade fade_;
   Selection selection_, selectionAhead_;
   FailedNodes::ByNode failures_;
   std::uint64_t failuresVersion_ = 0;

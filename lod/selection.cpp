@@ -73,7 +73,7 @@ class Walk {
 
   /// The node as a candidate, if it is in view and its parents do not give all that is wanted there.
   std::optional<Selection::Candidate> look(std::uint32_t node, double given, float parentPriority,
-                                           std::uint32_t& occluded) const {
+                                           std::vector<std::uint32_t>& hidden) const {
     const NodeRecord& record = nodes_[node];
     const Contour contour = contourOf(record);
     const double reach = reach_.empty() ? 0.0 : static_cast<double>(reach_[node]);
@@ -99,7 +99,7 @@ class Walk {
     selected.pointCount = pointsAt(candidate, 1.0);
     if (candidate.leaf && !isRoot && selected.pointCount == 0) return std::nullopt;
     if (!isRoot && depth_ != nullptr && depth_->hides(contour, reach)) {
-      ++occluded;
+      hidden.push_back(node);
       return std::nullopt;
     }
     return candidate;
@@ -114,7 +114,7 @@ class Walk {
     for (std::size_t child = first; child < first + children; ++child) {
       ++out.tested;
       const auto candidate =
-          look(static_cast<std::uint32_t>(child), parent.density(), parent.selected.priority, out.occluded);
+          look(static_cast<std::uint32_t>(child), parent.density(), parent.selected.priority, out.hidden);
       if (!candidate) continue;
       out.heap.push_back(*candidate);
       std::push_heap(out.heap.begin(), out.heap.end(), lessUrgent);
@@ -176,6 +176,7 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
   out.nodes.clear();
   out.heap.clear();
   out.taken.clear();
+  out.hidden.clear();
   out.pointCount = 0;
   out.tested = 0;
   out.occluded = 0;
@@ -190,7 +191,7 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
 
   const Walk walk(hierarchy, reach, view, depth, options);
   out.tested = 1;
-  if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max(), out.occluded)) out.heap.push_back(*root);
+  if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max(), out.hidden)) out.heap.push_back(*root);
   double highestShare = 1.0;
   std::uint64_t wanted = 0;
   std::size_t nextCheck = 0;
@@ -211,6 +212,7 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
     wanted += candidate.selected.pointCount;
     walk.pushChildren(candidate, out);
   }
+  out.occluded = static_cast<std::uint32_t>(out.hidden.size());
   emit(wanted, budget, highestShare, out);
 }
 

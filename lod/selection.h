@@ -25,6 +25,8 @@ struct SelectionOptions {
   /// What the streamer reads of a node beside its positions: what this shows. Nothing: colour, intensity and class.
   std::optional<ColourMode> shown{};
   bool normals = false;  ///< ... and the normals, where the store has them
+  /// The streamer draws a node that has been in view all along in full no sooner than so long after its first point.
+  double fadeSeconds = 0.2;
   Clip clip{};  ///< nodes of which nothing is left by it are not drawn, read or counted; it does not cut the others
 
   bool operator==(const SelectionOptions&) const = default;
@@ -39,10 +41,11 @@ struct SelectedNode {
 
 /// The result, and the memory of the walk, so that a Selection used again allocates nothing.
 struct Selection {
-  std::vector<SelectedNode> nodes;  ///< most urgent first; parents before their children
-  std::uint64_t pointCount = 0;     ///< sum over nodes
-  std::uint32_t tested = 0;         ///< contours looked at
-  std::uint32_t occluded = 0;       ///< of these, left out because something hides them
+  std::vector<SelectedNode> nodes;    ///< most urgent first; parents before their children
+  std::uint64_t pointCount = 0;       ///< sum over nodes
+  std::uint32_t tested = 0;           ///< contours looked at
+  std::uint32_t occluded = 0;         ///< of these, left out because something hides them
+  std::vector<std::uint32_t> hidden;  ///< those, in no order
   bool budgetReached = false;
   double pointsPerPixel = 0.0;  ///< as wanted, or what the budget leaves of it
 

@@ -149,7 +149,7 @@ void Streamer::lodLoop(std::stop_token stop) {
       if (retryAt_ == FailedNodes::Clock::time_point::max())
         lodWake_.wait(lock, stop, hasWork);
       else
-        lodWake_.wait_until(lock, stop, retryAt_, hasWork);  // then a failed node may be tried again
+        lodWake_.wait_until(lock, stop, retryAt_, hasWork);  // a failed node may be tried again, a new one has grown
       if (stop.stop_requested()) return;
       task = newest_;
       nodesChanged_ = false;
@@ -162,12 +162,12 @@ void Streamer::lodLoop(std::stop_token stop) {
 void Streamer::runPass(const LodTask& task, bool isNewView) {
   const auto start = std::chrono::steady_clock::now();
   TraceScope pass(lodLane_, "LOD pass");
-  const LodPass::Result built = pass_.run(task, failed_, back_, requests_, lodLane_);
+  const LodPass::Result built = pass_.run(task, failed_, start, back_, requests_, lodLane_);
   back_.list.serial = counters_.lodPasses.load(std::memory_order_relaxed) + 1;
   pass.count("nodes", back_.list.items.size());
   counters_.occluded.store(built.occluded, std::memory_order_relaxed);
   counters_.occluders.store(built.occluders, std::memory_order_relaxed);
-  const bool pending = built.requests > 0 || built.waiting > 0;
+  const bool pending = built.requests > 0 || built.waiting > 0 || built.fading > 0;
   TraceScope step(lodLane_, "publish");
   queue_.replace(requests_);
   publish(back_);

@@ -107,8 +107,8 @@ class Streamer {
   /// waitUntilComplete(); the RenderItems may be copied, but must be let go on the render thread.
   const RenderList& beginFrame();
 
-  /// Any thread: the newest list is for the newest view and options and lacks nothing that can be had (nodes out of
-  /// tries, and what a too small cache cannot hold, are done without).
+  /// Any thread: the newest list is for the newest view and options, has all points of its nodes that are wanted, and
+  /// lacks nothing that can be had (nodes out of tries, and what a too small cache cannot hold, are done without).
   bool complete() const;
 
   /// Render thread; not on the frame path. Calls beginFrame() each time that something has happened until complete(),

@@ -24,6 +24,7 @@ SelectionOptions selectionFor(const PictureOrder& order) {
   // What a part is drawn with must not depend on what else is in it: no budget, and nothing left out as hidden.
   selection.pointBudget = SelectionOptions::kMaxPointBudget;
   selection.occlusion.enabled = false;
+  selection.fadeSeconds = 0.0;
   return selection;
 }
 

@@ -90,7 +90,7 @@ void pass(benchmark::State& state, bool occlusion) {
   std::uint64_t passes = 0, nodes = 0;
   const auto run = [&](double metres) {
     task.view = loaded.town.along(metres, height);
-    result = lod.run(task, failed, list, requests, nullptr);
+    result = lod.run(task, failed, Fade::Time::clock::now(), list, requests, nullptr);
     nodes = list.list.items.size();
     list.list.items.clear();
     loaded.cache.unpin(list.pins, released);
