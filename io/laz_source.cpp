@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/log.h"
 #include "io/las_record.h"
 #include "io/las_source.h"
 #include "io/laz_codec.h"
@@ -197,6 +198,14 @@ std::unique_ptr<PointSource> openLaz(std::unique_ptr<ByteSource> file, const Las
         throw Error(info.path, "the file ends early, found chunks of " + std::to_string(held) + " points (expected " +
                                    std::to_string(points) + ")");
       points = std::min(points, held);
+      std::uint64_t before = 0, more = 0;  // points of whole chunks behind the counted ones
+      for (const LazChunk& chunk : chunks) {
+        if (before >= points) more += chunk.points;
+        before += chunk.points;
+      }
+      if (more > 0)
+        logWarning(info.path + ": the header counts " + std::to_string(points) + " points, found room for " +
+                   std::to_string(more) + " more behind them, which are not read");
       parts = partsOf(chunks, equalChunks, points);
     } else if (equalChunks && file->size() - header.pointsOffset > 8) {
       parts = onePart(*file, std::uint64_t{header.pointsOffset} + 8, format.chunkSize, points);

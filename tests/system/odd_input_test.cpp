@@ -189,6 +189,23 @@ TEST_F(OddInput, RecordsBehindTheCountedPointsAreWarnedOf) {
   EXPECT_EQ(mustInfo(folder_ / "some.strata").at("points"), 60);
 }
 
+TEST_F(OddInput, ChunksBehindTheCountedPointsAreWarnedOf) {
+  mustConvert({"synthetic:city?points=120000&seed=1"}, folder_ / "city.strata");
+  const std::string laz = (folder_ / "city.laz").string();
+  ASSERT_EQ(runProgram("strata-export", {(folder_ / "city.strata").string(), "-o", laz, "--format", "7"}).exitCode, 0);
+  EXPECT_EQ(runProgram("strata-convert", {laz, "-o", (folder_ / "all.strata").string()}).err.find("more behind them"),
+            std::string::npos);
+  const std::uint64_t counted = 60000;  // of three chunks of at most 50,000
+  std::fstream header(laz, std::ios::binary | std::ios::in | std::ios::out);
+  header.seekp(247);  // LAS 1.4: the number of point records
+  header.write(reinterpret_cast<const char*>(&counted), sizeof counted);
+  header.close();
+  const Finished finished = runProgram("strata-convert", {laz, "-o", (folder_ / "some.strata").string()});
+  EXPECT_EQ(finished.exitCode, 0) << finished.err;
+  EXPECT_NE(finished.err.find("the header counts 60000 points, found room for "), std::string::npos) << finished.err;
+  EXPECT_EQ(mustInfo(folder_ / "some.strata").at("points"), 60000);
+}
+
 TEST_F(OddInput, TheSameFileTwiceCountsTwice) {
   const std::string input = las(gridScan(10));
   EXPECT_EQ(mustConvert({input, input}, folder_ / "out.strata").at("points"), 200);
