@@ -11,7 +11,8 @@ GlFunctions loadGlFunctions(GlContext& context) {
   const char* missing = nullptr;
   const auto load = [&](auto& function, const char* name) {
     function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(context.getProc(name));
-    if (function == nullptr && std::strcmp(name, "glClipControl") != 0) missing = name;
+    const bool newer = std::strcmp(name, "glClipControl") == 0 || std::strcmp(name, "glBufferStorage") == 0;
+    if (function == nullptr && !newer) missing = name;
   };
 #define STRATA_GL_LOAD(result, name, parameters) load(functions.name, "gl" #name);
   STRATA_GL_FUNCTIONS(STRATA_GL_LOAD)

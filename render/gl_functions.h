@@ -8,7 +8,7 @@
 namespace strata {
 
 // X(return type, name without gl, parameters): every OpenGL function that Strata calls, all of 4.3 core but
-// ClipControl (4.5 or ARB_clip_control, null where absent).
+// ClipControl (4.5 or ARB_clip_control) and BufferStorage (4.4 or ARB_buffer_storage), null where absent.
 #define STRATA_GL_FUNCTIONS(X)                                                                                   \
   X(void, ActiveTexture, (unsigned unit))                                                                        \
   X(void, AttachShader, (unsigned program, unsigned shader))                                                     \
@@ -18,14 +18,18 @@ namespace strata {
   X(void, BindRenderbuffer, (unsigned target, unsigned renderbuffer))                                            \
   X(void, BindVertexArray, (unsigned array))                                                                     \
   X(void, BufferData, (unsigned target, std::ptrdiff_t size, const void* data, unsigned usage))                  \
+  X(void, BufferStorage, (unsigned target, std::ptrdiff_t size, const void* data, unsigned flags))               \
   X(void, BufferSubData, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, const void* data))        \
   X(unsigned, CheckFramebufferStatus, (unsigned target))                                                         \
   X(void, ClearBufferData,                                                                                       \
     (unsigned target, unsigned internalFormat, unsigned format, unsigned type, const void* data))                \
   X(void, ClearBufferfv, (unsigned buffer, int index, const float* value))                                       \
   X(void, ClearBufferuiv, (unsigned buffer, int index, const unsigned* value))                                   \
+  X(unsigned, ClientWaitSync, (void* sync, unsigned flags, unsigned long long nanoseconds))                      \
   X(void, ClipControl, (unsigned origin, unsigned depth))                                                        \
   X(void, CompileShader, (unsigned shader))                                                                      \
+  X(void, CopyBufferSubData,                                                                                     \
+    (unsigned from, unsigned to, std::ptrdiff_t fromOffset, std::ptrdiff_t toOffset, std::ptrdiff_t size)) \
   X(unsigned, CreateProgram, ())                                                                                 \
   X(unsigned, CreateShader, (unsigned type))                                                                     \
   X(void, DeleteBuffers, (int count, const unsigned* buffers))                                                   \
@@ -34,6 +38,7 @@ namespace strata {
   X(void, DeleteQueries, (int count, const unsigned* queries))                                                   \
   X(void, DeleteRenderbuffers, (int count, const unsigned* renderbuffers))                                       \
   X(void, DeleteShader, (unsigned shader))                                                                       \
+  X(void, DeleteSync, (void* sync))                                                                              \
   X(void, DeleteVertexArrays, (int count, const unsigned* arrays))                                               \
   X(void, DepthFunc, (unsigned function))                                                                        \
   X(void, Disable, (unsigned capability))                                                                        \
@@ -41,6 +46,7 @@ namespace strata {
   X(void, DispatchComputeIndirect, (std::ptrdiff_t offset))                                                      \
   X(void, Enable, (unsigned capability))                                                                         \
   X(void, EnableVertexAttribArray, (unsigned index))                                                             \
+  X(void*, FenceSync, (unsigned condition, unsigned flags))                                                      \
   X(void, Finish, ())                                                                                            \
   X(void, FramebufferRenderbuffer, (unsigned target, unsigned attachment, unsigned kind, unsigned renderbuffer)) \
   X(void, GenBuffers, (int count, unsigned* buffers))                                                            \
@@ -60,6 +66,7 @@ namespace strata {
   X(const unsigned char*, GetStringi, (unsigned name, unsigned index))                                           \
   X(const unsigned char*, GetString, (unsigned name))                                                            \
   X(void, LinkProgram, (unsigned program))                                                                       \
+  X(void*, MapBufferRange, (unsigned target, std::ptrdiff_t offset, std::ptrdiff_t size, unsigned access))       \
   X(void, MemoryBarrier, (unsigned barriers))                                                                    \
   X(void, MultiDrawArraysIndirect, (unsigned mode, const void* commands, int count, int stride))                 \
   X(void, PixelStorei, (unsigned name, int value))                                                               \
@@ -128,6 +135,14 @@ inline constexpr unsigned kTimestamp = 0x8E28;
 inline constexpr unsigned kQueryResult = 0x8866;
 inline constexpr unsigned kShaderStorageBuffer = 0x90D2;
 inline constexpr unsigned kMaxShaderStorageBlockSize = 0x90DE;
+inline constexpr unsigned kCopyReadBuffer = 0x8F36;
+inline constexpr unsigned kCopyWriteBuffer = 0x8F37;
+inline constexpr unsigned kMapWrite = 0x0002;
+inline constexpr unsigned kMapPersistent = 0x0040;
+inline constexpr unsigned kMapCoherent = 0x0080;
+inline constexpr unsigned kGpuCommandsComplete = 0x9117;
+inline constexpr unsigned kFlushCommands = 0x0001;
+inline constexpr unsigned kTimeoutExpired = 0x911B;
 inline constexpr unsigned kStreamDraw = 0x88E0;
 inline constexpr unsigned kStaticDraw = 0x88E4;
 inline constexpr unsigned kDynamicCopy = 0x88EA;

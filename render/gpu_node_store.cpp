@@ -25,7 +25,8 @@ GpuNodeStore::GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes,
       maxBytes_(gpuBytes),
       maxPageBytes_(std::min(kPageBytes, largestBlock(functions))),
       uploadBytesPerFrame_(uploadBytesPerFrame),
-      groupSize_(groupSize) {}
+      groupSize_(groupSize),
+      staging_(functions, kPartBytes) {}
 
 void GpuNodeStore::beginFrame(const RenderList& list) {
   ++frame_;
@@ -97,17 +98,16 @@ GpuNodeStore::Entries::iterator GpuNodeStore::upload(const std::shared_ptr<const
 
 void GpuNodeStore::writePart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t words,
                              const NodeNeeds& needs) {
-  staging_.assign(words, 0);
-  fillPart(node, place, part, groupSize_, staging_);
-  pages_[part.page]->buffer.write(std::uint64_t{part.firstBox} * 4, staging_.data(), std::uint64_t{words} * 4);
+  const std::span<std::uint32_t> room = staging_.room(words);
+  std::fill(room.begin(), room.end(), 0);
+  fillPart(node, place, part, groupSize_, room);
+  staging_.send(pages_[part.page]->buffer, std::uint64_t{part.firstBox} * 4);
   if (needs.colours) writeColours(node, part, needs);
 }
 
 void GpuNodeStore::writeColours(const NodeData& node, const GpuPart& part, const NodeNeeds& needs) {
-  staging_.resize(part.pointCount);
-  pointColours(node, part.firstPoint, *needs.options, Precision::low10, staging_);
-  pages_[part.page]->buffer.write(std::uint64_t{part.firstColour} * 4, staging_.data(),
-                                  std::uint64_t{part.pointCount} * 4);
+  pointColours(node, part.firstPoint, *needs.options, Precision::low10, staging_.room(part.pointCount));
+  staging_.send(pages_[part.page]->buffer, std::uint64_t{part.firstColour} * 4);
 }
 
 /// Evicts as long as that can help.

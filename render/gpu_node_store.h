@@ -8,6 +8,7 @@
 #include "core/frame.h"
 #include "core/render_list.h"
 #include "render/gl_objects.h"
+#include "render/gl_staging.h"
 #include "render/page_allocator.h"
 #include "render/shaders/shader_types.h"
 
@@ -104,7 +105,7 @@ class GpuNodeStore {
   std::vector<std::unique_ptr<Page>> pages_;
   Entries entries_;  ///< least recently listed first
   std::unordered_map<const NodeData*, Entries::iterator> index_;
-  std::vector<std::uint32_t> staging_;
+  GlStaging staging_;
   std::uint64_t frame_ = 0;
   std::uint64_t pageBytes_ = 0;
   std::uint64_t uploadedBytes_ = 0;
