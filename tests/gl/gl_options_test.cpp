@@ -2,6 +2,7 @@
 // the driver cannot.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <cstring>
 
 #include "render/compute_rasterizer.h"
@@ -29,8 +30,8 @@ class GlOptions : public testing::TestWithParam<Backend> {
   }
   bool isCompute() const { return GetParam() != Backend::points; }
 
-  /// The same as the cpu's, but for points that fall to the other side of an edge.
-  void expectTheCpusPicture(const View& view, const DrawOptions& options, double mostOther = 0.002) {
+  /// The same as the cpu's, but for points that fall to the other side of an edge. Colours within `alike` of 255 are.
+  void expectTheCpusPicture(const View& view, const DrawOptions& options, double mostOther = 0.002, int alike = 0) {
     const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
     Frame expected, frame;
     cpu->draw(list_, view, options, expected);
@@ -40,7 +41,13 @@ class GlOptions : public testing::TestWithParam<Backend> {
       covered += expected.pointId[i] != Frame::kNoPoint;
       const bool same = expected.pointId[i] == frame.pointId[i];
       otherIds += !same;
-      otherColours += same && expected.colour[i] != frame.colour[i];
+      for (int shift = 0; same && shift < 24; shift += 8) {
+        const int apart =
+            static_cast<int>(expected.colour[i] >> shift & 255u) - static_cast<int>(frame.colour[i] >> shift & 255u);
+        if (std::abs(apart) <= alike) continue;
+        ++otherColours;
+        break;
+      }
     }
     EXPECT_GT(covered, 1000u);
     EXPECT_LE(static_cast<double>(otherIds), mostOther * static_cast<double>(covered));
@@ -116,14 +123,14 @@ TEST_P(GlOptions, BlendPointsNearTheFront) {
   }
 }
 
-/// Filling is shared; one point in another pixel changes the splats around it.
+/// One point in another pixel changes the splats around it, and shaders blend in integers.
 TEST_P(GlOptions, FillHolesByJumpFlooding) {
   STRATA_CREATE_OR_SKIP();
   View view = view_;
   view.eye = view.target + (view.eye - view.target) * 0.4;
   DrawOptions options;
   options.jumpFlood = true;
-  expectTheCpusPicture(view, options, 0.01);
+  expectTheCpusPicture(view, options, 0.01, 2);
 }
 
 TEST_P(GlOptions, LeaveOutNodesBelowTheGazesThreshold) {
