@@ -113,11 +113,13 @@ FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSet
       const std::size_t pixel = static_cast<std::size_t>(pixelRow(seed)) * static_cast<std::size_t>(frame.width) +
                                 static_cast<std::size_t>(pixelColumn(seed));
       const PointPlace place = finder.find(frame.pointId[pixel]);
-      out.place[i] = {frame.depth[pixel], reaches[place.item]};
+      const float depth = frame.depth[pixel];
+      // The seeds of neighbouring pixels are next to each other, however near the points of the scan lie.
+      const float least = settings.sectors ? kFloodNextPixels * out.lens.metres(depth) : 0.0f;
+      out.place[i] = {depth, std::max(reaches[place.item], least)};
       if (!normals || place.node->normal.empty()) continue;
       const glm::vec3 normal = toCamera * unpackNormal(place.node->normal[place.index]);
-      const glm::vec3 away =
-          out.lens.perspective ? out.lens.position(seed, frame.depth[pixel]) : glm::vec3(0.0f, 0.0f, 1.0f);
+      const glm::vec3 away = out.lens.perspective ? out.lens.position(seed, depth) : glm::vec3(0.0f, 0.0f, 1.0f);
       out.normal[i] = packFloodNormal(glm::dot(normal, away) > 0.0f ? -normal : normal);
     }
   });

@@ -9,6 +9,9 @@
 
 namespace strata {
 
+/// Between neighbours whose seeds are next to each other: less can only be the picture's pixels.
+inline constexpr float kFloodNextPixels = 4.0f;
+
 /// How holes are filled; the defaults are what DrawOptions::jumpFlood does. faithfulFlood() is the paper's way.
 struct FloodSettings {
   float reachSpacings = 4.0f;   ///< largest distance of two points of a layer, in spacings of their nodes

@@ -32,6 +32,8 @@ void main() {
   uint index = indexAt(p);
   if (id != kNone) {
     seed.reach = reachOf(id);
+    // The seeds of neighbouring pixels are next to each other, however near the points of the scan lie.
+    if (has(STRATA_FLOOD_SECTORS)) seed.reach = max(seed.reach, STRATA_FLOOD_NEXT_PIXELS * metres(seed.depth));
     if (has(STRATA_FLOOD_NORMALS)) seed.normal = normals[index];
     ivec2 tile = p / STRATA_FLOOD_TILE;
     float reach = min(reachPx(seed), params.farthestReach);

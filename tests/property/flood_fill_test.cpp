@@ -245,6 +245,17 @@ TEST(FloodFill, ClosesASparseWall) {
   EXPECT_LE(open, frame.depth.size() / 100);
 }
 
+/// As coarse positions do to a scan that is finer than the pixels: its points fall onto a lattice with gaps.
+TEST(FloodFill, ClosesTheGapsBetweenPixelsWhereTheScanIsFinerThanThem) {
+  const auto lattice = std::make_shared<NodeData>(*wall(1, 10.0, 12.0, 0.1, kEverywhere));  // 1.7 pixels apart
+  lattice->spacing = 0.025f;
+  const RenderList list = test::makeList({lattice});
+  const Frame before = drawn(list, ahead(), false), after = drawn(list, ahead(), true);
+  const auto open = [](const Frame& f) { return std::count(f.pointId.begin(), f.pointId.end(), Frame::kNoPoint); };
+  EXPECT_GT(open(before), static_cast<std::ptrdiff_t>(before.pointId.size() / 4));
+  EXPECT_LT(open(after), static_cast<std::ptrdiff_t>(before.pointId.size() / 50));
+}
+
 TEST(FloodFill, LeavesAFullPictureAsItIs) {
   const RenderList walls = test::makeList({wall(1, 10.0, 12.0, 0.02, kEverywhere)});
   const Frame before = drawn(walls, ahead(), false), after = drawn(walls, ahead(), true);
