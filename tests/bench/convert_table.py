@@ -79,7 +79,7 @@ def growth(scans):
     few, many = las[0], las[-1]
     if many.points > few.points:
         print(f"\n{many.points / few.points:.3g} times the points take {many.wall / few.wall:.3g} times as long (LAS, {few.name()} and "
-              f"{many.name()}); merging, one thread, takes {few.merging():.0f} % of the one and {many.merging():.0f} % of the other.")
+              f"{many.name()}); merging takes {few.merging():.0f} % of the one and {many.merging():.0f} % of the other.")
     distribute, build = many.stage("distribute")[0], many.stage("build")[0]
     if distribute > 0 and build > 0:
         moved = many.runs[0]["input_bytes"] + many.temporary, many.temporary + many.runs[0]["output_bytes"]
