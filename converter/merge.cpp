@@ -22,6 +22,17 @@ struct OpenNode {
 
 using Tops = std::vector<ChunkTop>::iterator;
 
+/// Calls `see(child, first, last)` with the tops inside each child of the cell that holds all of these.
+template <typename See>
+void forEachChild(NodeKey cell, Tops first, Tops last, See&& see) {
+  for (int octant = 0; octant < 8; ++octant) {
+    const NodeKey child = cell.child(octant);
+    const Tops end = std::find_if(first, last, [&](const ChunkTop& t) { return !child.isAncestorOf(t.key); });
+    if (first != end) see(child, first, end);
+    first = end;
+  }
+}
+
 class Merger {
  public:
   Merger(const BuildFrame& frame, const Spill& spill, const ConvertControl& control, ChunkScratch& scratch)
@@ -36,12 +47,8 @@ class Merger {
       return top;
     }
     std::vector<OpenNode> children;
-    for (int octant = 0; octant < 8; ++octant) {
-      const NodeKey child = cell.child(octant);
-      const auto end = std::find_if(first, last, [&](const ChunkTop& t) { return !child.isAncestorOf(t.key); });
-      if (first != end) children.push_back(merge(child, first, end));
-      first = end;
-    }
+    forEachChild(cell, first, last,
+                 [&](NodeKey child, Tops begin, Tops end) { children.push_back(merge(child, begin, end)); });
     return takeFromChildren(cell, std::move(children));
   }
 
@@ -145,17 +152,11 @@ struct Group {
 /// The largest cells that hold a few tops each, in Morton order.
 void findGroups(NodeKey cell, Tops first, Tops last, std::vector<Group>& groups) {
   constexpr std::ptrdiff_t kMostTops = 8;  // fewer, and a cell with a chunk in each octant could not be merged
-  if (first == last) return;
-  if (last - first <= kMostTops) {
+  if (last - first <= kMostTops)
     groups.push_back({cell, first, last});
-    return;
-  }
-  for (int octant = 0; octant < 8; ++octant) {
-    const NodeKey child = cell.child(octant);
-    const auto end = std::find_if(first, last, [&](const ChunkTop& t) { return !child.isAncestorOf(t.key); });
-    findGroups(child, first, end, groups);
-    first = end;
-  }
+  else
+    forEachChild(cell, first, last,
+                 [&](NodeKey child, Tops begin, Tops end) { findGroups(child, begin, end, groups); });
 }
 
 struct MergedGroup {
