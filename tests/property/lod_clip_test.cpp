@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <random>
 
 #include "core/make_node.h"
 #include "lod/hierarchy_index.h"
@@ -10,22 +9,15 @@
 #include "lod/streamer.h"
 #include "render/rasterizer.h"
 #include "tests/support/lod_store.h"
+#include "tests/support/random.h"
 
 namespace strata {
 namespace {
 
 using test::makeTerrain;
+using test::Random;
 using test::Terrain;
 using test::TerrainOptions;
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 Box randomBox(const Box& within, Random& random) {
   Box box;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <random>
 #include <vector>
 
 #include "converter/options.h"
@@ -17,10 +16,13 @@
 #include "lod/coarse_depth.h"
 #include "lod/selection.h"
 #include "tests/support/oracle.h"
+#include "tests/support/random.h"
 #include "tests/support/test_data.h"
 
 namespace strata {
 namespace {
+
+using test::Random;
 
 constexpr std::uint64_t kPoints = 1'500'000;
 
@@ -56,15 +58,6 @@ const Scan& scanOf(const std::string& name) {
   static const Scan room("room"), city("city");
   return name == "room" ? room : city;
 }
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// From a place where nothing stands, in any direction that people look.
 View randomView(const Scan& scan, Random& random) {

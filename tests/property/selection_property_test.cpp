@@ -3,35 +3,20 @@
 
 #include <algorithm>
 #include <bit>
-#include <random>
 #include <set>
 
 #include "lod/contour.h"
 #include "lod/hierarchy_index.h"
 #include "lod/selection.h"
 #include "tests/support/lod_store.h"
+#include "tests/support/random.h"
 
 namespace strata {
 namespace {
 
 using test::makeTerrain;
+using test::Random;
 using test::Terrain;
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : engine_(seed) {}
-  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  glm::dvec3 direction() {
-    while (true) {
-      const glm::dvec3 d(in(-1, 1), in(-1, 1), in(-1, 1));
-      const double length = glm::length(d);
-      if (length > 0.1 && length < 1.0) return d / length;
-    }
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 View randomView(Random& random, const Box& around) {
   View view;
