@@ -9,19 +9,20 @@
 #include <random>
 #include <thread>
 
-#include "converter/add_normals.h"
-#include "converter/build_chunks.h"
-#include "converter/build_folder.h"
-#include "converter/chunk_builder.h"
-#include "converter/conversion_terms.h"
-#include "converter/disk_room.h"
-#include "converter/distribute.h"
-#include "converter/merge.h"
-#include "converter/node_sink.h"
+#include "converter/build/build_chunks.h"
+#include "converter/build/chunk_builder.h"
+#include "converter/build/merge.h"
+#include "converter/build/node_sink.h"
+#include "converter/distribute/distribute.h"
+#include "converter/journal/build_folder.h"
+#include "converter/journal/conversion_terms.h"
+#include "converter/journal/disk_room.h"
+#include "converter/normals/add_normals.h"
 #include "converter/options.h"
-#include "converter/survey.h"
+#include "converter/survey/survey.h"
 #include "core/error.h"
-#include "io/store_files.h"
+#include "io/open_scans.h"
+#include "io/store/store_files.h"
 
 namespace strata {
 namespace {
@@ -395,7 +396,7 @@ ConvertReport convert(const ConvertOptions& asked, const ConvertControl& control
   clock.begin(stage::kSurvey);
   SourceOptions source = options.source;
   source.stop = control.stop;
-  convertOpen(openSources(options.inputs, source), options, control, clock, report);
+  convertOpen(openScans(options.inputs, source), options, control, clock, report);
   return report;
 }
 

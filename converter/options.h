@@ -6,12 +6,25 @@
 #include <string>
 #include <vector>
 
-#include "converter/sampling.h"
 #include "core/log.h"
-#include "io/plane_sizes.h"
-#include "io/point_source.h"
+#include "io/scan/point_source.h"
+#include "io/store/plane_sizes.h"
 
 namespace strata {
+
+/// How a node's points are picked and ordered. All but `ntree` are there to be measured against it.
+enum class Sampling : std::uint8_t {
+  ntree,    ///< levelOrder()
+  poisson,  ///< no two points of a prefix closer than a distance that shrinks from level to level, by random trial
+  random    ///< any
+};
+const char* samplingName(Sampling sampling);
+
+/// Which colour the points of nodes with children are drawn in.
+enum class LodColour : std::uint8_t {
+  first,   ///< their own
+  average  ///< the mean of the points that they stand for
+};
 
 struct ConvertOptions {
   std::vector<std::string> inputs;

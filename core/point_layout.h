@@ -36,17 +36,17 @@ inline constexpr std::string_view kIntensity = "intensity";            // u16
 inline constexpr std::string_view kClassification = "classification";  // u8
 inline constexpr std::string_view kFlags = "flags";                    // u8, bits as LAS 1.4 byte 15:
 // 0 synthetic, 1 key point, 2 withheld, 3 overlap, 4-5 scanner channel, 6 scan direction, 7 edge of flight line
-inline constexpr std::string_view kReturnNumber = "return_number";         // u8
-inline constexpr std::string_view kNumberOfReturns = "number_of_returns";  // u8
-inline constexpr std::string_view kScanAngleRank = "scan_angle_rank";      // i8, degrees (LAS formats 0 to 5)
-inline constexpr std::string_view kScanAngle = "scan_angle";               // i16, 0.006 degrees (formats 6 to 10)
-inline constexpr std::string_view kUserData = "user_data";                 // u8
-inline constexpr std::string_view kPointSourceId = "point_source_id";      // u16
-inline constexpr std::string_view kGpsTime = "gps_time";                   // f64
-inline constexpr std::string_view kWavePacket = "wave_packet";             // u8 x 29, the record's waveform fields
-inline constexpr std::string_view kNormal = "normal";                      // f32 x 3
+inline constexpr std::string_view kReturnNumber = "return_number";          // u8
+inline constexpr std::string_view kNumberOfReturns = "number_of_returns";   // u8
+inline constexpr std::string_view kScanAngleRank = "scan_angle_rank";       // i8, degrees (LAS formats 0 to 5)
+inline constexpr std::string_view kScanAngle = "scan_angle";                // i16, 0.006 degrees (formats 6 to 10)
+inline constexpr std::string_view kUserData = "user_data";                  // u8
+inline constexpr std::string_view kPointSourceId = "point_source_id";       // u16
+inline constexpr std::string_view kGpsTime = "gps_time";                    // f64
+inline constexpr std::string_view kWavePacket = "wave_packet";              // u8 x 29, the record's waveform fields
+inline constexpr std::string_view kNormal = "normal";                       // f32 x 3
 inline constexpr std::string_view kNormalOctahedral = "normal_octahedral";  // u8 x 2, core/octahedral.h; estimated
-inline constexpr std::string_view kColourShift = "strata:colour_shift";    // u8; only in stores of sources that differ
+inline constexpr std::string_view kColourShift = "strata:colour_shift";     // u8; only in stores of sources that differ
 // in it: the point's own StoreInfo::colourShift. Ours, not the sources': exports leave it out
 }  // namespace attribute
 

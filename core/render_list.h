@@ -10,8 +10,11 @@ namespace strata {
 
 /// One node to draw: the first `pointCount` points of its level order. Holding the pointer pins the node.
 struct RenderItem {
+  static constexpr std::uint32_t kNoIndex = 0xffffffffu;
+
   std::shared_ptr<const NodeData> node;
   std::uint32_t pointCount = 0;
+  std::uint32_t index = kNoIndex;  ///< the node's record in its store's hierarchy; kNoIndex for a node of no store
 };
 
 /// What one LOD pass decided to draw. The only thing that lod hands to render.

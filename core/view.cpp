@@ -6,7 +6,7 @@
 namespace strata {
 
 View wholePicture(const View& view) {
-  if (view.part == PicturePart{}) return view;
+  if (view.part == PictureTile{}) return view;
   View whole = view;
   whole.width = view.part.pictureWidth;
   whole.height = view.part.pictureHeight;

@@ -7,11 +7,11 @@
 namespace strata {
 
 /// Where an image lies in the larger picture that it is a part of; pixels. All zero: the image is the whole picture.
-struct PicturePart {
+struct PictureTile {
   int pictureWidth = 0, pictureHeight = 0;
   int left = 0, top = 0;  ///< of the image's first pixel
 
-  bool operator==(const PicturePart&) const = default;
+  bool operator==(const PictureTile&) const = default;
 };
 
 /// A camera and its image, everything in double so that UTM coordinates do not jitter.
@@ -26,7 +26,7 @@ struct View {
   double nearPlane = 0.01;          ///< metres; points nearer than this are not drawn. There is no far plane
   int width = 1920;                 ///< of the image
   int height = 1080;
-  PicturePart part;  ///< fovY and orthographicHeight are those of the whole picture
+  PictureTile part;  ///< fovY and orthographicHeight are those of the whole picture
 
   bool operator==(const View&) const = default;
 };

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <numbers>
 
-#include "io/instruction_sets.h"
+#include "core/instruction_sets.h"
 
 namespace strata {
 namespace {

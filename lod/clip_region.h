@@ -1,5 +1,5 @@
 #pragma once
-#include "core/frame.h"
+#include "core/draw_options.h"
 #include "lod/contour.h"
 
 namespace strata {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 
 namespace strata {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/contour.h"
 #include "lod/hierarchy_index.h"
 

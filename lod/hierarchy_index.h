@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "io/store.h"
+#include "io/store/store.h"
 
 namespace strata {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 #include "lod/node_loader.h"
 
 namespace strata {
@@ -192,7 +192,7 @@ ListBuilder::Result ListBuilder::build(const Selection& selection, const Selecti
     out.list.coarseNodes += poor ? 1 : 0;
     const std::uint32_t points = fade.allow(wanted.node, std::min(wanted.pointCount, found_[i]->pointCount()),
                                             lastMark == missingLast || lastMark == blockedLast);
-    out.list.items.push_back({std::move(found_[i]), points});
+    out.list.items.push_back({std::move(found_[i]), points, wanted.node});
     out.list.pointCount += points;
   }
   found_.clear();

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/render_list.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/fade.h"
 #include "lod/failed_nodes.h"
 #include "lod/load_queue.h"

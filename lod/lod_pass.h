@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/depth_buffers.h"
 #include "lod/fade.h"
 #include "lod/failed_nodes.h"

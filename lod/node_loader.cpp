@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/point_layout.h"
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 
 namespace strata {
 namespace {

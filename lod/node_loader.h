@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <utility>
 
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/load_queue.h"
 #include "lod/node_reader.h"
 #include "lod/occluders.h"

@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <thread>
 
-#include "io/store.h"
+#include "io/store/store.h"
 
 namespace strata {
 

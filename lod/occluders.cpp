@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "io/instruction_sets.h"
+#include "core/instruction_sets.h"
 #include "lod/cell_plane.h"
 
 namespace strata {

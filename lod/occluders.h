@@ -8,7 +8,7 @@
 
 #include "core/box.h"
 #include "core/node_data.h"
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 
 namespace strata {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "core/frame.h"
+#include "core/draw_options.h"
 #include "core/node_data.h"
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/clip_region.h"
 #include "lod/coarse_depth.h"
 #include "lod/contour.h"

@@ -13,7 +13,7 @@
 
 #include "core/render_list.h"
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/depth_buffers.h"
 #include "lod/failed_nodes.h"
 #include "lod/hierarchy_index.h"

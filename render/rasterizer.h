@@ -1,13 +1,12 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
-#include "core/frame.h"
+#include "core/draw_options.h"
+#include "core/picture.h"
 #include "core/render_list.h"
-#include "render/gl_context.h"
 
 namespace strata {
 
@@ -19,9 +18,9 @@ struct DrawStats {
   std::uint32_t batchesAt[3] = {0, 0, 0};  ///< by precision: 10, 20, 30 bits
   std::uint32_t nodesNotUploaded = 0;      ///< left out of this frame: over the upload budget or out of GPU memory
   std::uint64_t bytesUploaded = 0;
-  std::uint64_t gpuBytes = 0;     ///< held by node data on the GPU; 0 for cpu
-  std::uint64_t lockRetries = 0;  ///< compute_lock: turns of its loops beyond the first
-  std::uint32_t lockRepairs = 0;  ///< compute_lock: pictures that compute32's passes had to finish
+  std::uint64_t gpuBytes = 0;       ///< held by node data on the GPU; 0 for cpu
+  std::uint64_t lockRetries = 0;    ///< compute_lock: turns of its loops beyond the first
+  std::uint32_t lockRepairs = 0;    ///< compute_lock: pictures that compute32's passes had to finish
   std::uint64_t pointsPending = 0;  ///< progressive: places of the pool that this picture has not met yet
   double uploadMs = 0.0, drawMs = 0.0, resolveMs = 0.0;
   double gpuMs = 0.0;  ///< of drawMs, by OpenGL's own clock: clearing, culling, drawing; no reading back. 0 for cpu
@@ -44,33 +43,15 @@ class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
   /// Draws `list` as seen by `view` (which may be newer than the list's). `frame` is resized to the view.
-  virtual DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Frame& frame) = 0;
+  virtual DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) = 0;
   /// One picture of `list` for each view, frames[i] as draw() gives for views[i]; as many frames as views. The sum of
   /// the stats. This one draws them one after the other; an implementation may read each point once for all views
   /// (Schütz 2022, 3.6).
   virtual DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                              std::span<Frame> frames);
+                              std::span<Picture> frames);
   virtual std::string_view name() const = 0;
   /// "llvmpipe (LLVM 15.0.6, 256 bits)", "2 threads"; for reports.
   virtual std::string device() const = 0;
 };
-
-enum class Backend : std::uint8_t { automatic, cpu, compute32, compute64, computeLock, points };
-
-/// "auto", "cpu", "compute32", "compute64", "compute_lock", "points". Throws UsageError, naming the choices, for
-/// anything else.
-Backend parseBackend(std::string_view name);
-
-struct RasterizerOptions {
-  int threads = 0;                                  ///< cpu; 0 = all cores
-  std::uint64_t gpuBytes = std::uint64_t{1} << 30;  ///< cap on node data held by the GPU
-  std::uint64_t uploadBytesPerFrame = std::uint64_t{64} << 20;
-};
-
-/// Takes over `context`; null will do for cpu, which lets go of one it is given. `automatic` is cpu where there is no
-/// context or OpenGL runs on the CPU or lacks what compute32 needs, else compute64, or compute32 where the driver lacks
-/// 64-bit atomics. Throws Error where the backend cannot work with the context.
-std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,
-                                             std::unique_ptr<GlContext> context);
 
 }  // namespace strata

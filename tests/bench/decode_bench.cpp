@@ -11,15 +11,15 @@
 #include <memory>
 
 #include "core/error.h"
-#include "io/attribute_codec.h"
-#include "io/bit_packing.h"
-#include "io/checksum.h"
-#include "io/colour_codec.h"
-#include "io/column_codec.h"
-#include "io/drawing_order.h"
-#include "io/node_codec.h"
-#include "io/payload_head.h"
-#include "io/position_codec.h"
+#include "io/file/checksum.h"
+#include "io/store/attribute_codec.h"
+#include "io/store/bit_packing.h"
+#include "io/store/colour_codec.h"
+#include "io/store/column_codec.h"
+#include "io/store/drawing_order.h"
+#include "io/store/node_codec.h"
+#include "io/store/payload_head.h"
+#include "io/store/position_codec.h"
 #include "lod/occluders.h"
 
 namespace strata {

@@ -16,17 +16,17 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "io/node_codec.h"
-#include "io/store.h"
-#include "render/flood_fill.h"
-#include "render/gl_context.h"
-#include "render/gl_flood.h"
-#include "render/rasterizer.h"
+#include "io/store/node_codec.h"
+#include "io/store/store.h"
+#include "render/create_rasterizer.h"
+#include "render/flood/flood_fill.h"
+#include "render/flood/gl_flood.h"
+#include "render/gl/gl_context.h"
 #include "render/stopwatch.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/mean_picture.h"
 #include "tests/support/picture_quality.h"
-#include "viewer/camera_path.h"
+#include "viewer/camera/camera_path.h"
 
 namespace strata::test {
 namespace {
@@ -134,7 +134,7 @@ void pictures(const std::string& out, const Store& store, const std::vector<View
   const std::vector<Way> ways = waysOf(store);
   for (std::size_t v = 0; v < views.size(); ++v) {
     const MeanPicture reference = meanPicture(whole, views[v]);
-    Frame full;
+    Picture full;
     rasterizer->draw(whole, views[v], {}, full);
     const std::string view = out + "/view" + std::to_string(v);
     writePng(view + "_all.png", imageOf(reference));
@@ -148,7 +148,7 @@ void pictures(const std::string& out, const Store& store, const std::vector<View
         const Way& way = ways[i];
         DrawOptions options;
         options.fill = way.window;
-        Frame frame;
+        Picture frame;
         rasterizer->draw(thin, views[v], options, frame);
         if (way.flood) floodFill(thin, views[v], way.settings, pool, frame);
         const FillJudgement judged = judgeFill(full, frame);
@@ -176,10 +176,10 @@ struct StepTimes {
 };
 
 template <typename Fill>
-StepTimes timesOf(const Frame& drawn, Fill fill) {
+StepTimes timesOf(const Picture& drawn, Fill fill) {
   StepTimes times;
   for (int i = -1; i < kTimedFrames; ++i) {
-    Frame frame = drawn;
+    Picture frame = drawn;
     Stopwatch watch;
     const FloodStats one = fill(frame);
     if (i < 0) continue;
@@ -233,13 +233,13 @@ void times(const Store& store, const std::vector<View>& views, const std::vector
         view.width = width;
         view.height = height;
         const RenderList thin = thinned(whole, share, 1);
-        Frame drawn;
+        Picture drawn;
         rasterizer->draw(thin, view, {}, drawn);
         row(v, view, thin.pointCount, "CPU",
-            timesOf(drawn, [&](Frame& frame) { return floodFill(thin, view, {}, pool, frame); }));
+            timesOf(drawn, [&](Picture& frame) { return floodFill(thin, view, {}, pool, frame); }));
         if (flood == nullptr || width != kWidth) continue;
         row(v, view, thin.pointCount, "OpenGL",
-            timesOf(drawn, [&](Frame& frame) { return flood->fill(thin, view, {}, pool, frame); }));
+            timesOf(drawn, [&](Picture& frame) { return flood->fill(thin, view, {}, pool, frame); }));
       }
   if (flood != nullptr) std::cout << "\nOpenGL: " << device << '\n';
   flood.reset();
@@ -260,7 +260,7 @@ void steadiness(const Store& store, const std::vector<View>& views, const std::v
   for (std::size_t v = 0; v < views.size(); ++v) {
     // The path of one view, and what of all points it shows: the same for every way.
     std::vector<View> path;
-    std::vector<Frame> full(kSteadyFrames);
+    std::vector<Picture> full(kSteadyFrames);
     const double pixel = glm::length(views[v].target - views[v].eye) / pixelsAt(views[v], 1.0, 1.0);
     for (int i = 0; i < kSteadyFrames; ++i) {
       const glm::dvec3 by = static_cast<double>(i) * kStepPixels * pixel * viewBasis(views[v]).right;
@@ -274,7 +274,7 @@ void steadiness(const Store& store, const std::vector<View>& views, const std::v
       for (std::size_t w = 0; w < ways.size(); ++w) {
         DrawOptions options;
         options.fill = ways[w].window;
-        Frame frame, before;
+        Picture frame, before;
         double sum = 0.0;
         for (std::size_t i = 0; i < path.size(); ++i) {
           rasterizer->draw(thin[k], path[i], options, frame);

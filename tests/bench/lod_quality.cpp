@@ -15,15 +15,15 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "io/node_codec.h"
-#include "io/store.h"
+#include "io/store/node_codec.h"
+#include "io/store/store.h"
 #include "lod/hierarchy_index.h"
 #include "lod/selection.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
 #include "tests/support/mean_picture.h"
 #include "tests/support/picture_quality.h"
 #include "tests/support/svg_chart.h"
-#include "viewer/camera_path.h"
+#include "viewer/camera/camera_path.h"
 
 namespace strata::test {
 namespace {
@@ -106,7 +106,7 @@ class LodPictures {
     return list_.pointCount;
   }
 
-  const Frame& draw(int pointSize) {
+  const Picture& draw(int pointSize) {
     DrawOptions options;
     options.pointSize = pointSize;
     drawn_ = rasterizer_->draw(list_, list_.view, options, frame_).pointsDrawn;
@@ -121,7 +121,7 @@ class LodPictures {
   std::unique_ptr<Rasterizer> rasterizer_;
   Selection selection_;
   RenderList list_;
-  Frame frame_;
+  Picture frame_;
   std::uint64_t drawn_ = 0;
 };
 
@@ -188,9 +188,9 @@ class QualityPlots {
 };
 
 /// Points of the least size that cover what is wanted.
-const Frame& drawClosed(LodPictures& pictures, const MeanPicture& reference, int& size) {
+const Picture& drawClosed(LodPictures& pictures, const MeanPicture& reference, int& size) {
   for (size = 1;; ++size) {
-    const Frame& frame = pictures.draw(size);
+    const Picture& frame = pictures.draw(size);
     if (size == kLargestClosing || coveredShare(reference, frame) >= kWantedCover) return frame;
   }
 }
@@ -213,12 +213,12 @@ void compare(const std::string& out, const std::string& referenceStore, const st
     for (std::size_t v = 0; v < views.size(); ++v)
       for (const std::uint64_t budget : kBudgets) {
         const std::uint64_t points = pictures.select(views[v], withinBudget(budget));
-        const Frame& frame = pictures.draw(1);
+        const Picture& frame = pictures.draw(1);
         const PictureQuality thin = pictureQuality(references[v], frame);
         const std::string name = out + "/" + kViewNames[v] + "_" + label + "_" + std::to_string(budget / 1000) + "k";
         if (budget == kShownBudget) writePng(name + ".png", {frame.width, frame.height, frame.colour});
         int size = 1;
-        const Frame& closed = drawClosed(pictures, references[v], size);
+        const Picture& closed = drawClosed(pictures, references[v], size);
         const PictureQuality filled = pictureQuality(references[v], closed);
         if (budget == kShownBudget) writePng(name + "_closed.png", {closed.width, closed.height, closed.colour});
         table << label << '\t' << kViewNames[v] << '\t' << budget << '\t' << points << '\t' << thin.covered << '\t'
@@ -268,10 +268,10 @@ void growth(const std::string& out, const std::string& store, const std::string&
   LodPictures pictures(store);
   const std::vector<View> views = readViews(viewsFile);
   for (std::size_t v = 0; v < views.size(); ++v) {
-    Frame last;
+    Picture last;
     for (double budget = 250e3; budget < 4e6; budget *= 1.01) {
       const std::uint64_t points = pictures.select(views[v], withinBudget(static_cast<std::uint64_t>(budget)));
-      const Frame& frame = pictures.draw(1);
+      const Picture& frame = pictures.draw(1);
       if (!last.colour.empty()) {
         std::uint64_t changed = 0;
         for (std::size_t i = 0; i < frame.colour.size(); ++i) changed += frame.colour[i] != last.colour[i] ? 1u : 0u;

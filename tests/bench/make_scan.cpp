@@ -11,9 +11,10 @@
 
 #include "core/error.h"
 #include "core/program.h"
-#include "io/output_file.h"
-#include "io/point_source.h"
-#include "io/scan_writer.h"
+#include "io/file/output_file.h"
+#include "io/open_scans.h"
+#include "io/scan/point_source.h"
+#include "io/scan/scan_writer.h"
 
 namespace strata {
 namespace {
@@ -93,7 +94,7 @@ NodePoints readPart(const PointSource& source, std::size_t part) {
 
 int run(int argc, char** argv) {
   if (argc < 3) throw UsageError("make_scan", "found too little (expected INPUT OUT.las|OUT.laz|OUT.pcd...)");
-  const auto sources = openSources({argv[1]}, {});
+  const auto sources = openScans({argv[1]}, {});
   const PointSource& source = *sources.front();
   if (!source.info().gridExact) throw Error(argv[1], "has no grid that LAS could keep");
   const StoreInfo info = describe(source.info());

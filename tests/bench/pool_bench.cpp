@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "render/point_pool.h"
-#include "render/pool_manager.h"
-#include "render/shuffle.h"
+#include "render/progressive/point_pool.h"
+#include "render/progressive/pool_manager.h"
+#include "render/progressive/shuffle.h"
 
 namespace strata::bench {
 namespace {

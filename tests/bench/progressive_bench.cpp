@@ -14,7 +14,8 @@
 
 #include "core/error.h"
 #include "core/image.h"
-#include "render/progressive_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/progressive/progressive_rasterizer.h"
 #include "render/stopwatch.h"
 #include "viewer/bench/suite_clouds.h"
 
@@ -51,7 +52,7 @@ std::unique_ptr<ProgressiveRasterizer> progressive(std::uint64_t pointsPerFrame,
 
 /// Takes all that the view shows into the pool and draws until the picture is finished.
 void fillPool(ProgressiveRasterizer& rasterizer, const RenderList& list, const View& view) {
-  Frame frame;
+  Picture frame;
   const ProgressiveOptions options = rasterizer.options();
   rasterizer.setOptions({kNoLimit, kNoLimit});
   while (!isFinished(rasterizer.draw(list, view, {}, frame))) {
@@ -72,7 +73,7 @@ struct Times {
 Times timeFrames(Rasterizer& rasterizer, const std::function<const RenderList&(int)>& listOf, View view, int frames) {
   const auto* const steps = dynamic_cast<const ProgressiveRasterizer*>(&rasterizer);
   std::vector<double> values[10];
-  Frame frame;
+  Picture frame;
   const glm::dvec3 step = 0.0005 * glm::distance(view.eye, view.target) * viewBasis(view).right;
   for (int i = -2; i < frames; ++i) {
     view.eye += step;
@@ -98,14 +99,14 @@ Times timeFrames(Rasterizer& rasterizer, const RenderList& list, const View& vie
 
 double millions(std::uint64_t points) { return static_cast<double>(points) * 1e-6; }
 
-void savePicture(const Scale& scale, const std::string& name, const Frame& frame) {
+void savePicture(const Scale& scale, const std::string& name, const Picture& frame) {
   if (!scale.pictures.empty())
     writePng(scale.pictures + "/" + name + ".png", {frame.width, frame.height, frame.colour});
 }
 
 /// Frames until shares of the pixels are final, after a jump of the camera to nodes that are in the pool.
 void convergenceTable(const Scale& scale, const Scene& scene) {
-  Frame wanted, frame;
+  Picture wanted, frame;
   {
     RasterizerOptions room;
     room.uploadBytesPerFrame = kNoLimit;
@@ -140,7 +141,7 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
         finished = isFinished(rasterizer->draw(scene.list, scene.view, {}, frame));
         std::size_t same = 0, all = 0;
         for (std::size_t i = 0; i < wanted.pointId.size(); ++i) {
-          const bool covered = wanted.pointId[i] != Frame::kNoPoint;
+          const bool covered = wanted.pointId[i] != Picture::kNoPoint;
           all += covered;
           same += covered && wanted.pointId[i] == frame.pointId[i];
         }

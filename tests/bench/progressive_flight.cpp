@@ -10,12 +10,14 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "core/percentile.h"
 #include "lod/streamer.h"
-#include "render/progressive_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/progressive/progressive_rasterizer.h"
 #include "render/stopwatch.h"
 #include "viewer/bench/measures.h"
-#include "viewer/camera_path.h"
-#include "viewer/drawing.h"
+#include "viewer/camera/camera_path.h"
+#include "viewer/session/drawing.h"
 
 namespace strata::bench {
 namespace {
@@ -39,16 +41,18 @@ struct Late {
   double late = 0.0, open = 0.0, wrong = 0.0;
 };
 
-Late compare(const Frame& frame, const Frame& plain) {
+Late compare(const Picture& frame, const Picture& plain) {
   std::size_t covered = 0, late = 0, open = 0, wrong = 0;
   for (std::size_t i = 0; i < plain.pointId.size(); ++i) {
-    const bool shown = frame.pointId[i] != Frame::kNoPoint, wanted = plain.pointId[i] != Frame::kNoPoint;
+    const bool shown = frame.pointId[i] != Picture::kNoPoint, wanted = plain.pointId[i] != Picture::kNoPoint;
     covered += wanted;
     late += wanted && frame.pointId[i] != plain.pointId[i];
     open += wanted && !shown;
     wrong += shown && (!wanted || frame.depth[i] < plain.depth[i] * (1.0f - kNearer));
   }
-  const auto share = [covered](std::size_t n) { return covered > 0 ? static_cast<double>(n) / static_cast<double>(covered) : 0.0; };
+  const auto share = [covered](std::size_t n) {
+    return covered > 0 ? static_cast<double>(n) / static_cast<double>(covered) : 0.0;
+  };
   return {share(late), share(open), static_cast<double>(wrong) / static_cast<double>(plain.pointId.size())};
 }
 
@@ -58,7 +62,7 @@ double mean(const std::vector<double>& values) {
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
 }
 
-void savePicture(const Flight& flight, const std::string& name, int index, const Frame& frame) {
+void savePicture(const Flight& flight, const std::string& name, int index, const Picture& frame) {
   if (flight.pictures.empty()) return;
   char file[96];
   std::snprintf(file, sizeof file, "/%s_%03d.png", name.c_str(), index);
@@ -82,7 +86,7 @@ void fly(const Flight& flight, const std::shared_ptr<const Store>& store, Progre
   Streamer streamer(store, streaming);
   streamer.setView(view(0.0));
   streamer.waitUntilComplete(std::chrono::minutes(2));
-  Frame frame, wanted;
+  Picture frame, wanted;
   while (!isFinished(timed.draw(streamer.beginFrame(), view(0.0), draw, frame))) {
   }
   std::vector<double> ms, late, open, turn, points;

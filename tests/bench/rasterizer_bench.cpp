@@ -6,9 +6,9 @@
 #include <cstdlib>
 
 #include "core/error.h"
-#include "render/batch_plan.h"
-#include "render/cpu_kernel.h"
-#include "render/rasterizer.h"
+#include "render/cpu/cpu_kernel.h"
+#include "render/create_rasterizer.h"
+#include "render/plan/batch_plan.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -67,7 +67,7 @@ void measure(benchmark::State& state, const Step& step) {
 }
 
 void draw(benchmark::State& state, Rasterizer& rasterizer, const View& view, const DrawOptions& options = {}) {
-  Frame frame;
+  Picture frame;
   measure(state, [&] { return rasterizer.draw(town(), view, options, frame); });
 }
 
@@ -91,7 +91,7 @@ void cpuWith(benchmark::State& state, int pointSize, int fill, bool edl, Shading
 /// Two eyes in one pass over the points, or one after the other.
 void eyes(benchmark::State& state, Rasterizer& rasterizer, bool together) {
   const View views[] = {farView(), otherEye(farView())};
-  Frame frames[2];
+  Picture frames[2];
   measure(state, [&] {
     if (together) return rasterizer.drawViews(town(), views, {}, frames);
     DrawStats sum = rasterizer.draw(town(), views[0], {}, frames[0]);

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/store.h"
-#include "io/store_files.h"
+#include "io/store/store.h"
+#include "io/store/store_files.h"
 
 namespace strata {
 namespace {

@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "converter/sampling.h"
+#include "converter/build/sampling.h"
 #include "tests/support/evenness.h"
 
 /// How even the prefixes of each sampling are on a dense plane, and what they cost.

@@ -31,14 +31,16 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/store_files.h"
-#include "io/synthetic_city.h"
-#include "io/synthetic_scanner.h"
+#include "core/percentile.h"
+#include "io/store/store_files.h"
+#include "io/synthetic/city.h"
+#include "io/synthetic/scanner.h"
 #include "lod/streamer.h"
+#include "render/create_rasterizer.h"
 #include "tests/bench/troubled_disk.h"
 #include "viewer/bench/measures.h"
-#include "viewer/camera_path.h"
-#include "viewer/drawing.h"
+#include "viewer/camera/camera_path.h"
+#include "viewer/session/drawing.h"
 
 namespace strata {
 namespace {
@@ -80,7 +82,7 @@ Flight fly(const TroubledStore& opened, const CameraPath& path, const StreamerOp
   streamer.waitUntilComplete(120s);
   opened.disk->begin();
   Flight flight;
-  Frame frame;
+  Picture frame;
   auto start = Clock::now();
   for (int i = 0; i < path.frames(); ++i) {
     const double t = i / path.fps;
@@ -146,7 +148,7 @@ Complete complete(const std::string& storePath, const View& view, bool occlusion
   result.nodes = list.items.size();
   result.points = list.pointCount;
   std::vector<double> times;
-  Frame frame;
+  Picture frame;
   for (int i = 0; i < 7; ++i) {
     const auto began = Clock::now();
     rasterizer->draw(list, view, draw, frame);
@@ -161,7 +163,7 @@ Complete complete(const std::string& storePath, const View& view, bool occlusion
 void indoors(const std::string& storePath, int views) {
   const Store store(storePath);
   const Box bounds = store.info().bounds;
-  const std::unique_ptr<ScannerScan> scan = makeRoom(store.info().points, 1);
+  const std::unique_ptr<synthetic::ScannerScan> scan = synthetic::makeRoom(store.info().points, 1);
   const glm::dvec3 origin = scan->frame().origin;
   std::mt19937_64 engine(5);
   const auto random = [&engine](double low, double high) {
@@ -220,7 +222,7 @@ void printFlightHead() {
       "nodes loaded | failures | given up |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
 }
 
-/// Frame times of the same pictures while a streamer is at work behind them with either disk: with lists of their own
+/// Picture times of the same pictures while a streamer is at work behind them with either disk: with lists of their own
 /// frames over the slow disk would be quicker, because less of what they want is there to be drawn.
 void samePictures(const std::string& store, const CameraPath& path) {
   constexpr int kRounds = 5;

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/error.h"
-#include "io/store.h"
-#include "io/store_files.h"
+#include "io/store/store.h"
+#include "io/store/store_files.h"
 
 namespace strata {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/las_header.h"
-#include "io/las_record.h"
-#include "io/las_vlr.h"
-#include "io/laz_header.h"
+#include "io/las/las_header.h"
+#include "io/las/las_record.h"
+#include "io/las/las_vlr.h"
+#include "io/las/laz_header.h"
 
 namespace {
 

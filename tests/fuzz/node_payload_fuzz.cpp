@@ -3,7 +3,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 #include "tests/support/sign_payload.h"
 
 namespace {

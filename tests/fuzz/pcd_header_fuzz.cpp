@@ -2,7 +2,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "io/pcd_header.h"
+#include "io/table/pcd_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

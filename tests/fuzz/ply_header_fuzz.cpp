@@ -2,7 +2,7 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "io/ply_header.h"
+#include "io/table/ply_header.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -1,7 +1,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "io/store.h"
+#include "io/store/store.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "core/error.h"
-#include "io/text_format.h"
-#include "io/text_table.h"
+#include "io/table/text_format.h"
+#include "io/table/text_table.h"
 
 namespace {
 

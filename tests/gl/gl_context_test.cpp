@@ -1,11 +1,11 @@
-#include "render/gl_context.h"
+#include "render/gl/gl_context.h"
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "render/compute_rasterizer.h"
-#include "render/gl_objects.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/gl/gl_objects.h"
+#include "render/gpu/compute_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
@@ -54,7 +54,7 @@ TEST(GlContextPair, DrawsByTurnsInOneThread) {
   const View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.71}, 256, 256, 1.0);
   const auto first = createRasterizer(Backend::compute32, {}, std::move(egl));
   auto second = createRasterizer(Backend::points, {}, std::move(osMesa));
-  Frame a, b, again;
+  Picture a, b, again;
   first->draw(list, view, {}, a);
   second->draw(list, view, {}, b);
   second.reset();

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "render/gl_flood.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/flood/gl_flood.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/synthetic_nodes.h"
@@ -48,9 +48,9 @@ class GlFloodTest : public testing::TestWithParam<test::ContextKind> {
 
   void expectTheCpusPicture(const RenderList& list, const View& view, const FloodSettings& settings,
                             std::uint64_t leastFilled = 500) {
-    Frame holes;
+    Picture holes;
     createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, holes);
-    Frame expected = holes, frame = holes;
+    Picture expected = holes, frame = holes;
     const ThreadPool pool(2);
     EXPECT_GE(floodFill(list, view, settings, pool, expected).filled, leastFilled);
     context_->makeCurrent();
@@ -63,8 +63,8 @@ class GlFloodTest : public testing::TestWithParam<test::ContextKind> {
                                              static_cast<int>(frame.colour[i] >> shift & 255u)));
       otherColours += largest > kSameColour;
       otherIds += expected.pointId[i] != frame.pointId[i];
-      uncovered += (expected.pointId[i] == Frame::kNoPoint) != (frame.pointId[i] == Frame::kNoPoint);
-      farther += expected.pointId[i] == frame.pointId[i] && expected.pointId[i] != Frame::kNoPoint &&
+      uncovered += (expected.pointId[i] == Picture::kNoPoint) != (frame.pointId[i] == Picture::kNoPoint);
+      farther += expected.pointId[i] == frame.pointId[i] && expected.pointId[i] != Picture::kNoPoint &&
                  !(std::abs(expected.depth[i] - frame.depth[i]) <= 0.002f * expected.depth[i]);
     }
     const auto share = [&](double of) { return of * static_cast<double>(expected.colour.size()); };
@@ -113,9 +113,9 @@ TEST_P(GlFloodTest, TakesPicturesOfAnySize) {
   for (const auto& [width, height] : {std::pair{1, 1}, {3, 5}, {8, 1}, {321, 179}, {200, 150}})
     expectTheCpusPicture(list, viewOf(list, 0.4, width, height), {}, 0);
   const ThreadPool pool(1);
-  Frame empty;
+  Picture empty;
   createRasterizer(Backend::cpu, {}, nullptr)->draw({}, viewOf(list, 1.0), {}, empty);
-  const Frame before = empty;
+  const Picture before = empty;
   context_->makeCurrent();
   flood_->fill({}, viewOf(list, 1.0), {}, pool, empty);
   EXPECT_EQ(before.colour, empty.colour);
@@ -124,9 +124,9 @@ TEST_P(GlFloodTest, TakesPicturesOfAnySize) {
 TEST_P(GlFloodTest, DrawsTheSameTwice) {
   const RenderList list = town();
   const View view = viewOf(list, 0.4);
-  Frame first;
+  Picture first;
   createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, first);
-  Frame second = first;
+  Picture second = first;
   const ThreadPool pool(1);
   context_->makeCurrent();
   flood_->fill(list, view, {}, pool, first);
@@ -153,7 +153,7 @@ TEST_P(FillingRasterizer, DrawsFrameAfterFrameAsTheCpuDoes) {
   DrawOptions options;
   for (const bool fill : {true, false, true, true}) {
     options.jumpFlood = fill;
-    Frame expected, frame;
+    Picture expected, frame;
     createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, expected);
     rasterizer->draw(list, view, options, frame);
     std::size_t other = 0;

@@ -5,7 +5,8 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "render/compute_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/gpu/compute_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
@@ -33,12 +34,12 @@ class GlOptions : public testing::TestWithParam<Backend> {
   /// The same as the cpu's, but for points that fall to the other side of an edge. Colours within `alike` of 255 are.
   void expectTheCpusPicture(const View& view, const DrawOptions& options, double mostOther = 0.002, int alike = 0) {
     const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
-    Frame expected, frame;
+    Picture expected, frame;
     cpu->draw(list_, view, options, expected);
     rasterizer_->draw(list_, view, options, frame);
     std::size_t covered = 0, otherIds = 0, otherColours = 0;
     for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
-      covered += expected.pointId[i] != Frame::kNoPoint;
+      covered += expected.pointId[i] != Picture::kNoPoint;
       const bool same = expected.pointId[i] == frame.pointId[i];
       otherIds += !same;
       for (int shift = 0; same && shift < 24; shift += 8) {
@@ -152,7 +153,7 @@ TEST_P(GlOptions, DrawTwoEyesAtOnceAsOneAfterTheOther) {
     options.gaze = {true, {0.3f, 0.5f}, 50.0f, 200.0f};
     options.clip.planes.push_back(glm::dvec4(0.6, 0.0, 0.8, -glm::dot(glm::dvec3(0.6, 0.0, 0.8), kUtm)));
     const View views[] = {left, right};
-    Frame both[2], one;
+    Picture both[2], one;
     const DrawStats stats = rasterizer_->drawViews(list_, views, options, both);
     std::uint64_t points = 0;
     for (int v = 0; v < 2; ++v) {
@@ -171,7 +172,7 @@ TEST_P(GlOptions, CountAsTheCpuDoes) {
   View close = view_;
   close.eye = close.target + 0.05 * (close.eye - close.target);
   for (const View& view : {view_, close}) {
-    Frame frame;
+    Picture frame;
     const DrawStats expected = cpu->draw(list_, view, {}, frame), stats = rasterizer_->draw(list_, view, {}, frame);
     EXPECT_EQ(stats.pointsDrawn, expected.pointsDrawn);
     EXPECT_EQ(stats.batchesDrawn, expected.batchesDrawn);
@@ -197,7 +198,7 @@ TEST(ComputeLock, FinishesThePictureWhereALockStaysTaken) {
     ComputeExperiment experiment;
     experiment.lockTurns = turns;
     const auto rasterizer = createComputeRasterizer(ComputeWay::computeLock, std::move(context), {}, experiment);
-    Frame frame;
+    Picture frame;
     const DrawStats stats = rasterizer->draw(list, view, {}, frame);
     const test::Comparison result = test::compareToOracle(list, view, frame);
     EXPECT_GE(result.agreement(), 0.999) << turns;
@@ -216,7 +217,7 @@ TEST(Compute64, DrawsTheSameWithoutPrefetch) {
   basic.prefetch = false;
   const auto one = createComputeRasterizer(ComputeWay::compute64, std::move(context), {}, basic);
   const auto four = createComputeRasterizer(ComputeWay::compute64, std::move(other), {});
-  Frame a, b;
+  Picture a, b;
   one->draw(list, view, {}, a);
   four->draw(list, view, {}, b);
   EXPECT_EQ(a.pointId, b.pointId);
@@ -294,7 +295,7 @@ TEST(GlRasterizers, TakeASmallerPoolWhereTheGpuHasNoMemory) {
   const auto rasterizer = createRasterizer(Backend::compute32, {}, std::move(scarce));
   const RenderList list = test::makeTown(kUtm, 200.0, 100000, 5);
   const View view = viewOfBox(test::boundsOf(list), kDirection, 512, 512, 1.0);
-  Frame frame;
+  Picture frame;
   const DrawStats stats = rasterizer->draw(list, view, {}, frame);
   EXPECT_EQ(stats.nodesNotUploaded, 0u);
   EXPECT_GT(stats.gpuBytes, 1000000u);
@@ -308,7 +309,7 @@ TEST(GlRasterizers, DrawTheSmallestAndTheLargestImage) {
     STRATA_REQUIRE_CONTEXT(context, ContextKind::egl);
     if (backend == Backend::compute64 && !hasWideAtomics(*context)) continue;
     const auto rasterizer = createRasterizer(backend, {}, std::move(context));
-    Frame frame;
+    Picture frame;
     const View dot = viewOfBox(test::boundsOf(list), kDirection, 1, 1, 1.0);
     rasterizer->draw(list, dot, {}, frame);
     EXPECT_EQ(test::compareToOracle(list, dot, frame).unexplained, 0u);

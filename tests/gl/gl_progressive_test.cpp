@@ -6,8 +6,10 @@
 #include <random>
 
 #include "core/image.h"
-#include "render/progressive_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/progressive/progressive_rasterizer.h"
 #include "tests/support/gl_contexts.h"
+#include "tests/support/paths.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata {
@@ -50,14 +52,14 @@ class Progressive : public testing::Test {
     return different;
   }
 
-  static std::size_t covered(const Frame& frame) {
+  static std::size_t covered(const Picture& frame) {
     return frame.pointId.size() -
-           static_cast<std::size_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint));
+           static_cast<std::size_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Picture::kNoPoint));
   }
 
   std::unique_ptr<ProgressiveRasterizer> progressive_;
   std::unique_ptr<Rasterizer> plain_;
-  Frame frame_, expected_;
+  Picture frame_, expected_;
 };
 
 #define STRATA_CREATE(...) \
@@ -147,7 +149,7 @@ TEST_F(Progressive, ShowsAnEvenHalfAfterHalfATurn) {
   const View view = viewOfBox(test::boundsOf(list), kDirection, 320, 240, 1.0);
   progressive_->draw(list, view, {}, frame_);
   const Image half{frame_.width, frame_.height, frame_.colour};
-  const std::string path = std::string(STRATA_SOURCE_DIR) + "/tests/golden/town_progressive_half.png";
+  const std::string path = (test::sourceFolder() / "tests/golden/town_progressive_half.png").string();
   if (std::getenv("STRATA_ACCEPT_GOLDEN") != nullptr) writePng(path, half);
   const Image golden = readPng(path);
   ASSERT_EQ(half.pixels.size(), golden.pixels.size());
@@ -176,8 +178,8 @@ TEST_F(Progressive, OfAMovingCameraIsLateByNoMoreThanTheFramesShares) {
     std::map<std::uint32_t, bool> shownNow;
     for (std::size_t i = 0; i < expected_.pointId.size(); ++i) {
       const std::uint32_t front = expected_.pointId[i];
-      if (front == Frame::kNoPoint) {
-        EXPECT_EQ(frame_.pointId[i], Frame::kNoPoint);
+      if (front == Picture::kNoPoint) {
+        EXPECT_EQ(frame_.pointId[i], Picture::kNoPoint);
         continue;
       }
       const bool shown = frame_.pointId[i] == front;
@@ -247,9 +249,9 @@ TEST_F(Progressive, GivesEveryNodeAPartOfAPoolThatIsTooSmall) {
   std::vector<std::uint32_t> ends;
   for (const RenderItem& item : all.items) ends.push_back((ends.empty() ? 0 : ends.back()) + item.pointCount);
   std::vector<std::size_t> shown(ends.size()), wanted(ends.size());
-  const auto count = [&ends](const Frame& frame, std::vector<std::size_t>& pixels) {
+  const auto count = [&ends](const Picture& frame, std::vector<std::size_t>& pixels) {
     for (const std::uint32_t id : frame.pointId)
-      if (id != Frame::kNoPoint)
+      if (id != Picture::kNoPoint)
         ++pixels[static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), id) - ends.begin())];
   };
   count(frame_, shown);

@@ -2,7 +2,8 @@
 
 #include <random>
 
-#include "render/compute_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/gpu/compute_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
@@ -45,16 +46,16 @@ class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKi
   }
 
   std::unique_ptr<Rasterizer> rasterizer_;
-  Frame frame_;
+  Picture frame_;
   std::uint64_t covered_ = 0;
 };
 
 #define STRATA_CREATE_OR_SKIP(...) \
   if (!create(__VA_ARGS__)) GTEST_SKIP() << "no " << test::contextName(std::get<1>(GetParam())) << " context here"
 
-std::size_t coveredPixels(const Frame& frame) {
+std::size_t coveredPixels(const Picture& frame) {
   std::size_t covered = 0;
-  for (const std::uint32_t id : frame.pointId) covered += id != Frame::kNoPoint;
+  for (const std::uint32_t id : frame.pointId) covered += id != Picture::kNoPoint;
   return covered;
 }
 
@@ -128,7 +129,7 @@ TEST_P(GlRasterizer, GivesTheSameColoursAsTheCpu) {
        {ColourMode::rgb, ColourMode::intensity, ColourMode::elevation, ColourMode::classification, ColourMode::level}) {
     options.colour = mode;
     options.pointSize = mode == ColourMode::elevation ? 3 : 1;
-    Frame expected;
+    Picture expected;
     rasterizer_->draw(list, view, options, frame_);
     cpu->draw(list, view, options, expected);
     std::size_t otherIds = 0, otherColours = 0;

@@ -1,7 +1,8 @@
 // Every way to draw with OpenGL against the oracle, on scans.
 #include <gtest/gtest.h>
 
-#include "render/compute_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/gpu/compute_rasterizer.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/oracle.h"
 #include "tests/support/scan_lists.h"
@@ -50,7 +51,7 @@ TEST_P(SamePicture, AsTheOraclesByEveryWay) {
     const double wanted = backend == Backend::points ? 0.995 : 0.999;
     std::uint64_t covered = 0, different = 0;
     for (const View& view : views) {
-      Frame frame;
+      Picture frame;
       rasterizer->draw(list, view, {}, frame);
       const test::Comparison result = test::compareToOracle(list, view, frame);
       EXPECT_GE(result.agreement(), wanted) << result.different << " of " << result.covered << " differ";

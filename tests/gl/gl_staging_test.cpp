@@ -1,4 +1,4 @@
-#include "render/gl_staging.h"
+#include "render/gl/gl_staging.h"
 
 #include <gtest/gtest.h>
 

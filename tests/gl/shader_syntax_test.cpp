@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "render/gl_flood.h"
-#include "render/gl_objects.h"
-#include "render/shader_variant.h"
+#include "render/flood/gl_flood.h"
+#include "render/gl/gl_objects.h"
+#include "render/gl/shader_variant.h"
 #include "tests/support/test_data.h"
 
 namespace strata {

@@ -7,7 +7,8 @@
 #include <filesystem>
 
 #include "core/image.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "tests/support/paths.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata {
@@ -36,10 +37,10 @@ void expectGolden(const std::string& name, const DrawOptions& options) {
   View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.6}, 320, 240, 1.0);
   view.target = {456789.0, 5412345.0, 300.0};
   view.eye = view.target + (view.eye - view.target) * 0.45;
-  Frame frame;
+  Picture frame;
   createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
   const Image actual{frame.width, frame.height, frame.colour};
-  const std::string path = std::string(STRATA_SOURCE_DIR) + "/tests/golden/" + name + ".png";
+  const std::string path = (test::sourceFolder() / "tests/golden" / (std::string(name) + ".png")).string();
   if (std::getenv("STRATA_ACCEPT_GOLDEN") != nullptr) writePng(path, actual);
   const double different = differentPart(actual, readPng(path));
   EXPECT_LE(different, kMaxDifferentPart) << name;

@@ -1,4 +1,4 @@
-#include "converter/contour.h"
+#include "converter/build/contour.h"
 
 #include <gtest/gtest.h>
 

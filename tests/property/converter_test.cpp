@@ -9,12 +9,13 @@
 #include <numeric>
 #include <random>
 
-#include "converter/build_folder.h"
+#include "converter/journal/build_folder.h"
 #include "converter/options.h"
 #include "core/error.h"
-#include "io/node_codec.h"
-#include "io/store_files.h"
-#include "io/verify.h"
+#include "io/open_scans.h"
+#include "io/store/node_codec.h"
+#include "io/store/store_files.h"
+#include "io/store/verify.h"
 #include "tests/support/evenness.h"
 #include "tests/support/test_data.h"
 
@@ -60,7 +61,7 @@ std::vector<std::string> sortedPoints(const Store& store) {
 std::vector<std::string> sortedSourcePoints(const std::string& input, const StoreInfo& info) {
   std::vector<std::string> all;
   const std::size_t stride = info.layout.stride();
-  for (const auto& source : openSources({input}, {}))
+  for (const auto& source : openScans({input}, {}))
     for (std::size_t part = 0; part < source->partCount(); ++part) {
       const auto reader = source->openPart(part);
       PointBlock block;

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "render/flood_fill.h"
-#include "render/flood_search.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/flood/flood_fill.h"
+#include "render/flood/flood_search.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -218,11 +218,11 @@ View ahead(int width = 300, int height = 200) {
   return view;
 }
 
-Frame drawn(const RenderList& list, const View& view, bool jumpFlood, int pointSize = 1) {
+Picture drawn(const RenderList& list, const View& view, bool jumpFlood, int pointSize = 1) {
   DrawOptions options;
   options.pointSize = pointSize;
   options.jumpFlood = jumpFlood;
-  Frame frame;
+  Picture frame;
   createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
   return frame;
 }
@@ -239,7 +239,7 @@ glm::dvec2 onWall(const View& view, std::size_t pixel, double distance) {
 
 TEST(FloodFill, ClosesASparseWall) {
   const RenderList list = test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)});  // 6 pixels apart
-  const Frame frame = drawn(list, ahead(), true);
+  const Picture frame = drawn(list, ahead(), true);
   std::size_t open = 0;
   for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
   EXPECT_LE(open, frame.depth.size() / 100);
@@ -250,16 +250,16 @@ TEST(FloodFill, ClosesTheGapsBetweenPixelsWhereTheScanIsFinerThanThem) {
   const auto lattice = std::make_shared<NodeData>(*wall(1, 10.0, 12.0, 0.1, kEverywhere));  // 1.7 pixels apart
   lattice->spacing = 0.025f;
   const RenderList list = test::makeList({lattice});
-  const Frame before = drawn(list, ahead(), false), after = drawn(list, ahead(), true);
-  const auto open = [](const Frame& f) { return std::count(f.pointId.begin(), f.pointId.end(), Frame::kNoPoint); };
+  const Picture before = drawn(list, ahead(), false), after = drawn(list, ahead(), true);
+  const auto open = [](const Picture& f) { return std::count(f.pointId.begin(), f.pointId.end(), Picture::kNoPoint); };
   EXPECT_GT(open(before), static_cast<std::ptrdiff_t>(before.pointId.size() / 4));
   EXPECT_LT(open(after), static_cast<std::ptrdiff_t>(before.pointId.size() / 50));
 }
 
 TEST(FloodFill, LeavesAFullPictureAsItIs) {
   const RenderList walls = test::makeList({wall(1, 10.0, 12.0, 0.02, kEverywhere)});
-  const Frame before = drawn(walls, ahead(), false), after = drawn(walls, ahead(), true);
-  ASSERT_EQ(std::count(before.pointId.begin(), before.pointId.end(), Frame::kNoPoint), 0);
+  const Picture before = drawn(walls, ahead(), false), after = drawn(walls, ahead(), true);
+  ASSERT_EQ(std::count(before.pointId.begin(), before.pointId.end(), Picture::kNoPoint), 0);
   EXPECT_EQ(before.colour, after.colour);
   EXPECT_EQ(before.depth, after.depth);
   EXPECT_EQ(before.pointId, after.pointId);
@@ -273,7 +273,7 @@ TEST(FloodFill, LeavesAWindowOpenWhateverLiesBehind) {
     if (background) nodes.push_back(wall(2, 40.0, 45.0, 0.15, kEverywhere));
     const RenderList list = test::makeList(nodes);
     const View view = ahead();
-    const Frame before = drawn(list, view, false), after = drawn(list, view, true);
+    const Picture before = drawn(list, view, false), after = drawn(list, view, true);
     std::size_t window = 0, changed = 0, sparse = 0, open = 0;
     for (std::size_t i = 0; i < before.depth.size(); ++i) {
       const glm::dvec2 place = onWall(view, i, 10.0);
@@ -298,7 +298,7 @@ TEST(FloodFill, ClosesASparseForegroundButNotTheGapsBetweenItsParts) {
   const RenderList list =
       test::makeList({wall(1, 10.0, 12.0, spacing, columns), wall(2, 30.0, 33.0, 0.1, kEverywhere)});
   const View view = ahead();
-  const Frame after = drawn(list, view, true);
+  const Picture after = drawn(list, view, true);
   std::size_t column = 0, through = 0, gap = 0, filled = 0;
   for (std::size_t i = 0; i < after.depth.size(); ++i) {
     const double off = std::abs(std::remainder(onWall(view, i, 10.0).x, 4.0));
@@ -328,12 +328,12 @@ TEST(FloodFill, GivesPointsTheirSizeWhereNothingWasFilled) {
   lonely->spacing = 0.1f;  // single points
   const RenderList apart = test::makeList({lonely}), sparse = test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)});
   for (const int size : {2, 5}) {
-    const Frame large = drawn(apart, ahead(), true, size);
+    const Picture large = drawn(apart, ahead(), true, size);
     EXPECT_EQ(drawn(apart, ahead(), false, size).colour, large.colour) << "no splats: squares as ever";
     EXPECT_NE(drawn(apart, ahead(), true).colour, large.colour);
-    const Frame filled = drawn(sparse, ahead(), true), both = drawn(sparse, ahead(), true, size);
+    const Picture filled = drawn(sparse, ahead(), true), both = drawn(sparse, ahead(), true, size);
     for (std::size_t i = 0; i < filled.pointId.size(); ++i) {
-      if (filled.pointId[i] == Frame::kNoPoint) continue;
+      if (filled.pointId[i] == Picture::kNoPoint) continue;
       ASSERT_EQ(both.colour[i], filled.colour[i]) << "a wall that is filled stays smooth";
       ASSERT_EQ(both.pointId[i], filled.pointId[i]);
     }
@@ -353,11 +353,11 @@ std::ptrdiff_t openBetweenLines(double apart, double along, bool ellipses) {
   auto node = std::make_shared<NodeData>(*test::makeNode(NodeKey(), points, 0.001));
   node->spacing = static_cast<float>(std::sqrt(apart * along));  // of as many points spread evenly
   const RenderList list = test::makeList({node});
-  Frame frame = drawn(list, ahead(), false);
+  Picture frame = drawn(list, ahead(), false);
   FloodSettings settings;
   settings.ellipses = ellipses;
   floodFill(list, ahead(), settings, pool(), frame);
-  return std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint);
+  return std::count(frame.pointId.begin(), frame.pointId.end(), Picture::kNoPoint);
 }
 
 TEST(FloodFill, ClosesTheGapsBetweenScanLines) { EXPECT_LT(openBetweenLines(0.6, 0.12, true), 600); }
@@ -371,11 +371,11 @@ TEST(FloodFill, FlickersLessThanThePictureWithHoles) {
   const RenderList whole = test::makeTown(kUtm, 100.0, 600000, 1, 4), thin = test::thinned(whole, 0.1, 1);
   View view = viewOfBox(test::boundsOf(whole), {1.0, 0.8, -0.6}, 240, 180, 1.0);
   view.eye = view.target + (view.eye - view.target) * 0.7;
-  Frame fullBefore, openBefore, filledBefore;
+  Picture fullBefore, openBefore, filledBefore;
   View before;
   double open = 0.0, filled = 0.0;
   for (int i = 0; i < 12; ++i) {
-    const Frame full = drawn(whole, view, false), holes = drawn(thin, view, false), closed = drawn(thin, view, true);
+    const Picture full = drawn(whole, view, false), holes = drawn(thin, view, false), closed = drawn(thin, view, true);
     if (i > 0) {
       open += test::flicker(full, view, holes, fullBefore, before, openBefore);
       filled += test::flicker(full, view, closed, fullBefore, before, filledBefore);
@@ -395,7 +395,7 @@ TEST(FloodFill, IsTheSameForAnyNumberOfThreads) {
   const RenderList list = test::thinned(test::makeTown(kUtm, 100.0, 60000, 1, 4), 0.5, 1);
   View view = viewOfBox(test::boundsOf(list), {1.0, 0.8, -0.6}, 320, 240, 1.0);
   view.eye = view.target + (view.eye - view.target) * 0.5;
-  Frame one = drawn(list, view, false), several = one;
+  Picture one = drawn(list, view, false), several = one;
   EXPECT_GT(floodFill(list, view, {}, ThreadPool(1), one).filled, 1000u);
   floodFill(list, view, {}, ThreadPool(4), several);
   EXPECT_EQ(one.colour, several.colour);
@@ -407,7 +407,7 @@ TEST(FloodFill, WorksWithoutPerspectiveToo) {
   View view = ahead();
   view.orthographic = true;
   view.orthographicHeight = 10.0;
-  const Frame frame = drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), view, true);
+  const Picture frame = drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), view, true);
   std::size_t open = 0;
   for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
   EXPECT_LE(open, frame.depth.size() / 100);
@@ -416,7 +416,7 @@ TEST(FloodFill, WorksWithoutPerspectiveToo) {
 TEST(FloodFill, TakesEmptyAndTinyPictures) {
   for (const auto& [width, height] : {std::pair{1, 1}, {1, 9}, {7, 1}, {3, 3}}) {
     drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), ahead(width, height), true);
-    EXPECT_EQ(drawn({}, ahead(width, height), true).pointId[0], Frame::kNoPoint);
+    EXPECT_EQ(drawn({}, ahead(width, height), true).pointId[0], Picture::kNoPoint);
   }
 }
 

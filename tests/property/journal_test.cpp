@@ -1,4 +1,4 @@
-#include "converter/journal.h"
+#include "converter/journal/journal.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "converter/sampling.h"
+#include "converter/build/sampling.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "io/store.h"
+#include "io/store/store.h"
 #include "tests/support/evenness.h"
 
 namespace strata {

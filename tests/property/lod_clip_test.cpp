@@ -7,7 +7,7 @@
 #include "lod/hierarchy_index.h"
 #include "lod/selection.h"
 #include "lod/streamer.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
 #include "tests/support/lod_store.h"
 #include "tests/support/random.h"
 
@@ -54,7 +54,7 @@ TEST(SelectionClip, LeavesOutNothingThatIsSeenAtAnyPrecision) {
         test::viewOfTerrain(terrain.info, random.in(0.1, 0.9), random.in(0.0, 0.6), random.in(5.0, 150.0), 320, 240);
     DrawOptions draw;
     draw.clip = randomClip(terrain.info.rootCube(), random);
-    Frame frames[2];
+    Picture frames[2];
     for (const bool clipped : {false, true}) {
       SelectionOptions options;
       options.pointBudget = SelectionOptions::kMaxPointBudget;

@@ -1,4 +1,4 @@
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 
 #include <gtest/gtest.h>
 

@@ -8,12 +8,12 @@
 #include <map>
 #include <random>
 
-#include "converter/nearest_points.h"
-#include "converter/normal_regions.h"
+#include "converter/normals/nearest_points.h"
+#include "converter/normals/normal_regions.h"
+#include "converter/normals/plane_fit.h"
 #include "converter/options.h"
 #include "core/octahedral.h"
-#include "io/node_codec.h"
-#include "io/plane_fit.h"
+#include "io/store/node_codec.h"
 #include "tests/support/test_data.h"
 
 namespace strata {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "converter/options.h"
-#include "io/node_codec.h"
-#include "io/synthetic_city.h"
-#include "io/synthetic_scanner.h"
+#include "io/store/node_codec.h"
+#include "io/synthetic/city.h"
+#include "io/synthetic/scanner.h"
 #include "lod/coarse_depth.h"
 #include "lod/selection.h"
 #include "tests/support/oracle.h"
@@ -29,11 +29,12 @@ constexpr std::uint64_t kPoints = 1'500'000;
 /// A converted scan, all of it in memory.
 struct Scan {
   std::unique_ptr<Store> store;
-  std::unique_ptr<ScannerScan> truth;
+  std::unique_ptr<synthetic::ScannerScan> truth;
   std::vector<std::shared_ptr<StreamedNode>> nodes;
   glm::dvec2 eyeHeights{0.0};
 
-  explicit Scan(const std::string& name) : truth(name == "room" ? makeRoom(kPoints, 1) : makeCity(kPoints, 1)) {
+  explicit Scan(const std::string& name)
+      : truth(name == "room" ? synthetic::makeRoom(kPoints, 1) : synthetic::makeCity(kPoints, 1)) {
     const test::TempFolder folder;
     ConvertOptions options;
     options.inputs = {"synthetic:" + name + "?points=" + std::to_string(kPoints) + "&seed=1"};
@@ -126,7 +127,7 @@ TEST_P(Occlusion, NoPixelOfTheFullPictureBelongsToANodeThatWasCulled) {
     const std::vector<bool> culled = culledNodes(scan, without, with);
     culledInAll += without.nodes.size() - with.nodes.size();
 
-    const Frame picture = test::oracleFrame(all, view);
+    const Picture picture = test::oracleFrame(all, view);
     std::vector<std::uint64_t> firstId;
     std::uint64_t points = 0;
     for (const RenderItem& item : all.items) {
@@ -134,7 +135,7 @@ TEST_P(Occlusion, NoPixelOfTheFullPictureBelongsToANodeThatWasCulled) {
       points += item.pointCount;
     }
     for (const std::uint32_t id : picture.pointId) {
-      if (id == Frame::kNoPoint) continue;
+      if (id == Picture::kNoPoint) continue;
       const auto after = std::upper_bound(firstId.begin(), firstId.end(), std::uint64_t{id});
       ++covered;
       lost += culled[static_cast<std::size_t>(after - firstId.begin()) - 1] ? 1 : 0;
@@ -159,8 +160,8 @@ bool isSeen(const Scan& scan, const View& view, const Projection& p, const glm::
   for (glm::length_t axis = 0; axis < 3; ++axis)
     if (direction[axis] == 0.0f) direction[axis] = 1e-7f;
   constexpr float kOwnSurface = 0.05f;  // noise and rounding: what stops the ray there is the point itself
-  Hit hit;
-  const Ray ray(glm::vec3(view.eye - scan.truth->frame().origin), direction, 1);
+  synthetic::Hit hit;
+  const synthetic::Ray ray(glm::vec3(view.eye - scan.truth->frame().origin), direction, 1);
   return !scan.truth->scene().trace(ray, distance, hit) || hit.t > distance - kOwnSurface;
 }
 

@@ -1,5 +1,6 @@
 // Pictures written part by part while their detail streams in.
-#include "viewer/picture_taker.h"
+#include "viewer/output/picture_taker.h"
+#include "render/create_rasterizer.h"
 
 #include <gtest/gtest.h>
 
@@ -35,7 +36,7 @@ class PictureTakerTest : public testing::Test {
   }
 
   /// Drawn in one piece, with room for everything.
-  static Frame whole(const PictureOrder& order) {
+  static Picture whole(const PictureOrder& order) {
     Layers layers = layersOf(std::uint64_t{1} << 30);
     SelectionOptions selection = order.selection;
     selection.pointBudget = SelectionOptions::kMaxPointBudget;
@@ -43,7 +44,7 @@ class PictureTakerTest : public testing::Test {
     layers.setSelection(selection);
     layers.setView(order.view);
     EXPECT_TRUE(layers.waitUntilComplete(milliseconds(20000)));
-    Frame frame;
+    Picture frame;
     createRasterizer(Backend::cpu, {}, nullptr)->draw(layers.beginFrame(), order.view, order.draw, frame);
     return frame;
   }

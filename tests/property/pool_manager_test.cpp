@@ -1,5 +1,5 @@
 // The memory manager of the point pool against a model that looks at every place.
-#include "render/pool_manager.h"
+#include "render/progressive/pool_manager.h"
 
 #include <gtest/gtest.h>
 

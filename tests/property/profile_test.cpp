@@ -1,5 +1,5 @@
 // Profiles read from a store against all its points looked at one by one.
-#include "viewer/profile.h"
+#include "viewer/tools/profile.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <set>
 
 #include "tests/support/lod_store.h"
-#include "viewer/profile_picture.h"
+#include "viewer/tools/profile_picture.h"
 
 namespace strata {
 namespace {
@@ -196,7 +196,7 @@ TEST_F(ProfileOfStores, ArePicturedWithEveryPointUnderItsOwnPixelOrOneNearerToTh
   ProfileSlab slab{{glm::dvec2(terrain_.info.rootCube().min), glm::dvec2(terrain_.info.rootCube().max)}, 30.0};
   const Profile profile = readProfile(stores_, slab, {}, {});
   DrawOptions options;
-  Frame frame;
+  Picture frame;
   std::mt19937 random(5);
   ProfileWindow window = fitProfile(profile, 300, 120, 10.0);
   for (int i = 0; i < 20; ++i) {

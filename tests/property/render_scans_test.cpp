@@ -1,7 +1,7 @@
 // Ten views of three scans, and one at full high definition, against the oracle.
 #include <gtest/gtest.h>
 
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
 #include "tests/support/oracle.h"
 #include "tests/support/scan_lists.h"
 #include "tests/support/test_data.h"
@@ -18,7 +18,7 @@ void expectOraclesPictures(const std::string& input) {
   views.push_back(test::viewsAround(test::boundsOf(list), 2, 1920, 1080)[1]);
   const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
   for (const View& view : views) {
-    Frame frame, again;
+    Picture frame, again;
     cpu->draw(list, view, {}, frame);
     const test::Comparison result = test::compareToOracle(list, view, frame);
     EXPECT_GE(result.agreement(), 0.999) << result.different << " of " << result.covered << " pixels differ";

@@ -5,8 +5,8 @@
 #include <random>
 #include <tuple>
 
-#include "render/batch_plan.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/plan/batch_plan.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -65,8 +65,8 @@ std::map<GridPoint, std::uint32_t> lowestIds(const RenderList& list, const ViewC
   return lowest;
 }
 
-Frame drawn(const RenderList& list, const View& view) {
-  Frame frame;
+Picture drawn(const RenderList& list, const View& view) {
+  Picture frame;
   createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, frame);
   return frame;
 }
@@ -77,10 +77,10 @@ TEST(Ties, GoToTheLowestIdOfAllPointsOfThePlace) {
     const Box box{kUtm, kUtm + side};
     for (const View& view : test::viewsAround(box, 8, 400, 400)) {
       const auto lowest = lowestIds(list, viewConstants(view));
-      const Frame frame = drawn(list, view);
+      const Picture frame = drawn(list, view);
       std::size_t covered = 0, shared = 0;
       for (const std::uint32_t id : frame.pointId) {
-        if (id == Frame::kNoPoint) continue;
+        if (id == Picture::kNoPoint) continue;
         ++covered;
         shared += lowest.at(placed(list, viewConstants(view), id)) != id;
       }
@@ -121,7 +121,7 @@ TEST(Ties, HoldWhereStepsOutgrowAFloat) {
   const auto lowest = lowestIds(list, viewConstants(view));
   std::size_t covered = 0;
   for (const std::uint32_t id : drawn(list, view).pointId) {
-    if (id == Frame::kNoPoint) continue;
+    if (id == Picture::kNoPoint) continue;
     ++covered;
     EXPECT_EQ(lowest.at(placed(list, viewConstants(view), id)), id);
   }

@@ -1,11 +1,11 @@
 // Points that wait in the temporary file come back as they were, by cell, in the order they were put there.
-#include "converter/runs.h"
+#include "converter/distribute/runs.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "converter/run_sorter.h"
+#include "converter/distribute/run_sorter.h"
 #include "core/error.h"
 #include "tests/support/las_maker.h"
 #include "tests/support/run_program.h"

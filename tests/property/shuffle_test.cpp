@@ -1,5 +1,5 @@
 // Where the points of a pool lie: bijections that spread what is neighboured (Rumpler 2019, 3.2 and 4.2.2).
-#include "render/shuffle.h"
+#include "render/progressive/shuffle.h"
 
 #include <gtest/gtest.h>
 

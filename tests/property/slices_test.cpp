@@ -5,12 +5,12 @@
 #include <cstring>
 #include <random>
 
+#include "converter/build/slices.h"
 #include "converter/options.h"
-#include "converter/slices.h"
 #include "core/error.h"
-#include "io/node_codec.h"
-#include "io/store_files.h"
-#include "io/verify.h"
+#include "io/store/node_codec.h"
+#include "io/store/store_files.h"
+#include "io/store/verify.h"
 #include "lod/hierarchy_index.h"
 #include "lod/selection.h"
 #include "tests/support/test_data.h"

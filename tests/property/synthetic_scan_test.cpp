@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "io/synthetic_source.h"
+#include "io/synthetic/synthetic_source.h"
 
 namespace strata {
 namespace {
@@ -32,7 +32,7 @@ class SyntheticShapes : public testing::TestWithParam<const char*> {
 
 TEST_P(SyntheticShapes, HoldExactlyTheCountThatWasAskedFor) {
   for (const std::uint64_t points : {1u, 2u, 999u, 1'000'000u, 1'000'003u}) {
-    const auto source = openSynthetic(spec("points=" + std::to_string(points)));
+    const auto source = synthetic::openScan(spec("points=" + std::to_string(points)));
     std::uint64_t count = 0;
     for (std::size_t part = 0; part < source->partCount(); ++part) {
       const Columns columns = readPart(*source, part, 65'536);
@@ -44,7 +44,8 @@ TEST_P(SyntheticShapes, HoldExactlyTheCountThatWasAskedFor) {
 }
 
 TEST_P(SyntheticShapes, GiveEveryPartTheSameBytesHoweverItIsRead) {
-  const auto one = openSynthetic(spec("points=2100000&seed=5")), other = openSynthetic(spec("points=2100000&seed=5"));
+  const auto one = synthetic::openScan(spec("points=2100000&seed=5")),
+             other = synthetic::openScan(spec("points=2100000&seed=5"));
   const Columns first = readPart(*one, 0, 1'000'000);
   const Columns last = readPart(*one, 2, 1'000'000);
   EXPECT_EQ(readPart(*other, 2, 777), last);  // alone, in another instance, in other blocks
@@ -58,12 +59,13 @@ TEST_P(SyntheticShapes, GiveEveryPartTheSameBytesHoweverItIsRead) {
 }
 
 TEST_P(SyntheticShapes, DifferBySeed) {
-  const auto one = openSynthetic(spec("points=20000&seed=1")), other = openSynthetic(spec("points=20000&seed=2"));
+  const auto one = synthetic::openScan(spec("points=20000&seed=1")),
+             other = synthetic::openScan(spec("points=20000&seed=2"));
   EXPECT_NE(readPart(*one, 0, 20'000), readPart(*other, 0, 20'000));
 }
 
 TEST_P(SyntheticShapes, StayInTheirBoundsAndOnTheirGrid) {
-  const auto source = openSynthetic(spec("points=1500000&seed=3"));
+  const auto source = synthetic::openScan(spec("points=1500000&seed=3"));
   const SourceInfo& info = source->info();
   ASSERT_TRUE(info.boundsExact);
   for (std::size_t part = 0; part < source->partCount(); ++part) {
@@ -75,7 +77,7 @@ TEST_P(SyntheticShapes, StayInTheirBoundsAndOnTheirGrid) {
 }
 
 TEST_P(SyntheticShapes, FillTheirBounds) {
-  const auto source = openSynthetic(spec("points=1000000"));
+  const auto source = synthetic::openScan(spec("points=1000000"));
   Box seen;
   for (const glm::dvec3& p : readPart(*source, 0, 1'000'000).positions) seen.add(source->info().origin + p);
   const glm::dvec3 declared = source->info().bounds.size();
@@ -85,7 +87,7 @@ TEST_P(SyntheticShapes, FillTheirBounds) {
 }
 
 TEST_P(SyntheticShapes, MakeTheLastPartOfTheLargestScanAlone) {
-  const auto source = openSynthetic(spec("points=1e11"));
+  const auto source = synthetic::openScan(spec("points=1e11"));
   ASSERT_EQ(source->partCount(), 100'000u);
   PointBlock block;
   ASSERT_TRUE(source->openPart(99'999)->read(block, 1000));

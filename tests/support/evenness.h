@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "converter/local_points.h"
+#include "converter/build/local_points.h"
 #include "core/box.h"
 
 /// Clouds of synthetic points, and how evenly some of them are spread.

@@ -22,7 +22,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
 struct DepthRange {
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
 };
-DepthRange depthsAround(const Frame& frame, int x, int y) {
+DepthRange depthsAround(const Picture& frame, int x, int y) {
   DepthRange range;
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, frame.height - 1); ++v)
     for (int u = std::max(x - 1, 0); u <= std::min(x + 1, frame.width - 1); ++u) {
@@ -69,15 +69,15 @@ RenderList thinned(const RenderList& list, double share, std::uint32_t seed) {
   return out;
 }
 
-FillJudgement judgeFill(const Frame& full, const Frame& filled) {
+FillJudgement judgeFill(const Picture& full, const Picture& filled) {
   std::uint64_t pixels = 0, covered = 0, wrong = 0;
   for (int y = 0; y < full.height; ++y)
     for (int x = 0; x < full.width; ++x) {
       const auto i = static_cast<std::size_t>(y * full.width + x);
       const DepthRange range = depthsAround(full, x, y);
-      const bool drawn = filled.pointId[i] != Frame::kNoPoint;
+      const bool drawn = filled.pointId[i] != Picture::kNoPoint;
       if (drawn && filled.depth[i] < (1.0f - kSameDepth) * range.nearest) ++wrong;
-      if (full.pointId[i] == Frame::kNoPoint) continue;
+      if (full.pointId[i] == Picture::kNoPoint) continue;
       ++pixels;
       if (drawn && filled.depth[i] <= (1.0f + kSameDepth) * range.farthest) ++covered;
     }
@@ -87,8 +87,8 @@ FillJudgement judgeFill(const Frame& full, const Frame& filled) {
   return judged;
 }
 
-double flicker(const Frame& full, const View& view, const Frame& frame, const Frame& fullBefore, const View& viewBefore,
-               const Frame& before) {
+double flicker(const Picture& full, const View& view, const Picture& frame, const Picture& fullBefore,
+               const View& viewBefore, const Picture& before) {
   const ViewBasis basis = viewBasis(view);
   const double perPixel = 1.0 / pixelsAt(view, 1.0, 1.0);
   const Projection earlier = projection(viewBefore);
@@ -96,7 +96,7 @@ double flicker(const Frame& full, const View& view, const Frame& frame, const Fr
   for (int y = 0; y < full.height; ++y)
     for (int x = 0; x < full.width; ++x) {
       const auto i = static_cast<std::size_t>(y * full.width + x);
-      if (full.pointId[i] == Frame::kNoPoint) continue;
+      if (full.pointId[i] == Picture::kNoPoint) continue;
       const double depth = static_cast<double>(full.depth[i]);
       const double side = (x + 0.5 - 0.5 * full.width) * perPixel, up = (0.5 * full.height - y - 0.5) * perPixel;
       const glm::dvec3 place = view.eye + depth * (basis.forward + side * basis.right + up * basis.up);

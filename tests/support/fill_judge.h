@@ -1,5 +1,5 @@
 #pragma once
-#include "core/frame.h"
+#include "core/picture.h"
 #include "core/render_list.h"
 #include "core/view.h"
 
@@ -15,13 +15,13 @@ struct FillJudgement {
   double covered = 1.0;  ///< share of the full picture's pixels in which the filled one shows nothing farther away
   double wrong = 0.0;    ///< share of all pixels in which it shows something where the full one is open, or nearer
 };
-FillJudgement judgeFill(const Frame& full, const Frame& filled);
+FillJudgement judgeFill(const Picture& full, const Picture& filled);
 
 /// How much the colours of surfaces change from one frame of a moving camera to the next: mean over red, green and blue
 /// of |difference|, 0 to 255. Each pixel of `full`, the picture of all points seen by `view`, says where its surface
 /// lies; `frame` and `before` are compared in the pixels that show this place in `view` and in `viewBefore`. Places
 /// outside of the frame before, and such that something hides there (by `fullBefore`), do not count.
-double flicker(const Frame& full, const View& view, const Frame& frame, const Frame& fullBefore, const View& viewBefore,
-               const Frame& before);
+double flicker(const Picture& full, const View& view, const Picture& frame, const Picture& fullBefore,
+               const View& viewBefore, const Picture& before);
 
 }  // namespace strata::test

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "render/gl_functions.h"
+#include "render/gl/gl_functions.h"
 
 namespace strata::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "render/gl_context.h"
+#include "render/gl/gl_context.h"
 
 namespace strata::test {
 

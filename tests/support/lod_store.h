@@ -14,8 +14,8 @@
 
 #include "core/error.h"
 #include "core/view.h"
-#include "io/node_codec.h"
-#include "io/store.h"
+#include "io/store/node_codec.h"
+#include "io/store/store.h"
 
 namespace strata::test {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/make_node.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/occluders.h"
 #include "tests/support/lod_store.h"
 

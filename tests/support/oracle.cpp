@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/batch_plan.h"
+#include "render/plan/batch_plan.h"
 
 namespace strata::test {
 namespace {
@@ -71,13 +71,13 @@ std::string describe(std::uint32_t id, const Projected& point) {
 
 }  // namespace
 
-Frame oracleFrame(const RenderList& list, const View& view, const DrawOptions& options) {
-  Frame frame;
+Picture oracleFrame(const RenderList& list, const View& view, const DrawOptions& options) {
+  Picture frame;
   frame.width = view.width;
   frame.height = view.height;
   const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  frame.pointId.assign(pixels, Frame::kNoPoint);
+  frame.pointId.assign(pixels, Picture::kNoPoint);
   forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) {
     if (!inImage(point, view)) return;
     const std::size_t at = static_cast<std::size_t>(point.row) * static_cast<std::size_t>(view.width) +
@@ -91,20 +91,20 @@ Frame oracleFrame(const RenderList& list, const View& view, const DrawOptions& o
   return frame;
 }
 
-Comparison compareToOracle(const RenderList& list, const View& view, const Frame& frame, const DrawOptions& options) {
-  const Frame expected = oracleFrame(list, view, options);
+Comparison compareToOracle(const RenderList& list, const View& view, const Picture& frame, const DrawOptions& options) {
+  const Picture expected = oracleFrame(list, view, options);
   std::vector<Projected> points(list.pointCount);
   forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) { points[id] = point; });
   Comparison result;
   for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
     const std::uint32_t wanted = expected.pointId[i], found = frame.pointId[i];
-    if (wanted == Frame::kNoPoint && found == Frame::kNoPoint) continue;
+    if (wanted == Picture::kNoPoint && found == Picture::kNoPoint) continue;
     ++result.covered;
     if (wanted == found) continue;
     ++result.different;
     bool known = false;
-    for (const std::uint32_t id : {wanted, found}) known |= id != Frame::kNoPoint && explained(points[id], view);
-    if (wanted != Frame::kNoPoint && found != Frame::kNoPoint && !known) {
+    for (const std::uint32_t id : {wanted, found}) known |= id != Picture::kNoPoint && explained(points[id], view);
+    if (wanted != Picture::kNoPoint && found != Picture::kNoPoint && !known) {
       const double a = points[wanted].depth, b = points[found].depth;
       known = std::abs(a - b) <= kDepthTie * std::max(a, b);
     }
@@ -112,9 +112,9 @@ Comparison compareToOracle(const RenderList& list, const View& view, const Frame
     if (result.unexplained++ > 0) continue;
     result.firstUnexplained = "pixel (" + std::to_string(i % static_cast<std::size_t>(view.width)) + ", " +
                               std::to_string(i / static_cast<std::size_t>(view.width)) + "): wanted ";
-    result.firstUnexplained += wanted == Frame::kNoPoint ? "nothing" : describe(wanted, points[wanted]);
+    result.firstUnexplained += wanted == Picture::kNoPoint ? "nothing" : describe(wanted, points[wanted]);
     result.firstUnexplained += ", found ";
-    result.firstUnexplained += found == Frame::kNoPoint ? "nothing" : describe(found, points[found]);
+    result.firstUnexplained += found == Picture::kNoPoint ? "nothing" : describe(found, points[found]);
   }
   return result;
 }

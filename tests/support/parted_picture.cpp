@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "render/picture_parts.h"
+#include "render/plan/picture_tiles.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata::test {
@@ -54,7 +54,7 @@ Image drawnInParts(Rasterizer& rasterizer, const RenderList& list, const View& v
   Image image{view.width, view.height, {}};
   image.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   const std::vector<int> columns = cuts(view.width), rows = cuts(view.height);
-  Frame frame;
+  Picture frame;
   for (std::size_t r = 0; r + 1 < rows.size(); ++r)
     for (std::size_t c = 0; c + 1 < columns.size(); ++c) {
       const View part = partOfPicture(view, columns[c], rows[r], columns[c + 1] - columns[c], rows[r + 1] - rows[r]);
@@ -72,7 +72,7 @@ void expectPartsMakeTheWhole(Rasterizer& rasterizer, int views) {
     view.orthographic = seed % 4 == 0;
     view.orthographicHeight = 90.0;
     for (const auto& [name, options] : effectsOnPictures(list)) {
-      Frame whole;
+      Picture whole;
       rasterizer.draw(list, view, options, whole);
       const Image parts = drawnInParts(rasterizer, list, view, options, marginOf(options), ++seed);
       std::size_t different = 0;

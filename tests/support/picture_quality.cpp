@@ -76,17 +76,17 @@ std::vector<double> ssimMap(std::span<const double> a, std::span<const double> b
   return map;
 }
 
-double coveredShare(const MeanPicture& reference, const Frame& drawn) {
+double coveredShare(const MeanPicture& reference, const Picture& drawn) {
   std::uint64_t pixels = 0, covered = 0;
   for (std::size_t i = 0; i < reference.covered.size(); ++i) {
     if (reference.covered[i] == 0) continue;
     ++pixels;
-    covered += drawn.pointId[i] != Frame::kNoPoint ? 1u : 0u;
+    covered += drawn.pointId[i] != Picture::kNoPoint ? 1u : 0u;
   }
   return pixels == 0 ? 1.0 : static_cast<double>(covered) / static_cast<double>(pixels);
 }
 
-PictureQuality pictureQuality(const MeanPicture& reference, const Frame& drawn) {
+PictureQuality pictureQuality(const MeanPicture& reference, const Picture& drawn) {
   PictureQuality quality;
   quality.covered = coveredShare(reference, drawn);
   std::vector<double> greyA, greyB;
@@ -111,7 +111,7 @@ PictureQuality pictureQuality(const MeanPicture& reference, const Frame& drawn) 
   return quality;
 }
 
-double psnr(const Frame& a, const Frame& b) {
+double psnr(const Picture& a, const Picture& b) {
   double squares = 0.0;
   for (std::size_t i = 0; i < a.colour.size(); ++i) {
     const glm::dvec3 difference = unpack(a.colour[i]) - unpack(b.colour[i]);

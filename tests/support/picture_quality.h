@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "core/frame.h"
+#include "core/picture.h"
 #include "tests/support/mean_picture.h"
 
 namespace strata::test {
@@ -13,13 +13,13 @@ struct PictureQuality {
   double psnr = 0.0;     ///< dB, RGB, peak 255; +inf for equal pictures
   double ssim = 0.0;     ///< mean of the SSIM map, luminance
 };
-PictureQuality pictureQuality(const MeanPicture& reference, const Frame& drawn);
+PictureQuality pictureQuality(const MeanPicture& reference, const Picture& drawn);
 
 /// Share of the reference's pixels that the frame has a point in.
-double coveredShare(const MeanPicture& reference, const Frame& drawn);
+double coveredShare(const MeanPicture& reference, const Picture& drawn);
 
 /// PSNR in dB of two drawn pictures over all pixels, RGB; +inf when they are equal.
-double psnr(const Frame& a, const Frame& b);
+double psnr(const Picture& a, const Picture& b);
 
 /// The SSIM map (Wang, Bovik, Sheikh, Simoncelli 2004: 11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03,
 /// L = 255) of two grey pictures, row by row; where the window does not fit into the picture it is left at -2.

@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/paths.h"
 #include "tests/support/test_data.h"
 
 namespace strata::test {
@@ -37,9 +38,7 @@ inline std::string readWhole(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-inline std::filesystem::path programPath(const std::string& name) {
-  return std::filesystem::path(STRATA_BIN_DIR) / name;
-}
+inline std::filesystem::path programPath(const std::string& name) { return programFolder() / name; }
 
 /// Runs one program to its end, with no input. `program` is one of ours or, with a slash in it, a path.
 inline Finished runProgram(const std::string& program, const std::vector<std::string>& arguments,

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "io/point_source.h"
+#include "io/open_scans.h"
+#include "io/scan/point_source.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata::test {
@@ -22,7 +23,7 @@ inline RenderList listOfScan(const std::string& input, std::size_t most, double 
     nodes.push_back(makeNode(key, points, step));
     points.clear();
   };
-  for (const auto& source : openSources({input}, {}))
+  for (const auto& source : openScans({input}, {}))
     for (std::size_t part = 0; part < source->partCount(); ++part) {
       const auto reader = source->openPart(part);
       for (PointBlock block; taken < most && reader->read(block, 10000);)

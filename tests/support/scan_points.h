@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
-#include "io/field_map.h"
-#include "io/point_source.h"
+#include "io/scan/point_source.h"
+#include "io/table/field_map.h"
 #include "tests/support/test_data.h"
 
 namespace strata::test {

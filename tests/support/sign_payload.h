@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "io/checksum.h"
-#include "io/node_payload.h"
+#include "io/file/checksum.h"
+#include "io/store/node_payload.h"
 
 namespace strata::test {
 

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/support/paths.h"
+
 namespace strata::test {
 
 /// Folder of the real scans with MANIFEST.tsv and EXPECTED.tsv; empty where they are absent.
 inline std::filesystem::path dataFolder() {
   if (const char* named = std::getenv("STRATA_TEST_DATA")) return named;
-  const std::filesystem::path beside = std::filesystem::path(STRATA_SOURCE_DIR) / ".." / "shared" / "data";
+  const std::filesystem::path beside = sourceFolder() / ".." / "shared" / "data";
   return std::filesystem::exists(beside / "MANIFEST.tsv") ? beside : std::filesystem::path();
 }
 

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "core/image.h"
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 
 namespace strata::test {
@@ -258,10 +259,10 @@ TEST_F(Bench, ABrowserPrintsTheReport) {
 TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
   const std::filesystem::path page = file("page.md");
-  std::filesystem::copy_file(STRATA_SOURCE_DIR "/docs/benchmarks.md", page);
-  const Finished done = runProgram(STRATA_SOURCE_DIR "/tests/bench/all.sh",
-                                   {"-b", std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d",
-                                    file("all").string(), "-o", page.string(), "-q", "machine", "targets"});
+  std::filesystem::copy_file(sourceFolder() / "docs/benchmarks.md", page);
+  const Finished done = runProgram((sourceFolder() / "tests/bench/all.sh").string(),
+                                   {"-b", programFolder().parent_path().string(), "-d", file("all").string(), "-o",
+                                    page.string(), "-q", "machine", "targets"});
   ASSERT_EQ(done.exitCode, 0) << done.err;
   const std::string text = readWhole(page);
   EXPECT_NE(text.find("**Machine**: "), std::string::npos);
@@ -286,11 +287,11 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
 TEST_F(Bench, TheSectionOfProgressiveDrawingIsWritten) {
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
   const std::filesystem::path page = file("progressive.md");
-  std::filesystem::copy_file(STRATA_SOURCE_DIR "/docs/benchmarks.md", page);
-  const Finished done =
-      runProgram("/usr/bin/env", {"RED_ROCKS=" + file("none").string(), STRATA_SOURCE_DIR "/tests/bench/all.sh", "-b",
-                                  std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d",
-                                  file("progressive").string(), "-o", page.string(), "-q", "progressive"});
+  std::filesystem::copy_file(sourceFolder() / "docs/benchmarks.md", page);
+  const Finished done = runProgram(
+      "/usr/bin/env", {"RED_ROCKS=" + file("none").string(), (sourceFolder() / "tests/bench/all.sh").string(), "-b",
+                       programFolder().parent_path().string(), "-d", file("progressive").string(), "-o", page.string(),
+                       "-q", "progressive"});
   ASSERT_EQ(done.exitCode, 0) << done.err;
   const std::string text = readWhole(page);
   const std::size_t begin = text.find("<!-- progressive: "), end = text.find("<!-- end of progressive -->");
@@ -305,9 +306,9 @@ TEST_F(Bench, TheSectionOfProgressiveDrawingIsWritten) {
 TEST_F(Bench, ConversionsMeasuredOneByOneShareTheirTables) {
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
   const auto convert = [](const std::string& size) {
-    return runProgram(STRATA_SOURCE_DIR "/tests/bench/convert.sh",
-                      {"-b", std::filesystem::path(STRATA_BIN_DIR).parent_path().string(), "-d", file("scans").string(),
-                       "-s", file("measured").string(), "-r", "1", "-n", size});
+    return runProgram((sourceFolder() / "tests/bench/convert.sh").string(),
+                      {"-b", programFolder().parent_path().string(), "-d", file("scans").string(), "-s",
+                       file("measured").string(), "-r", "1", "-n", size});
   };
   ASSERT_EQ(convert("20k").exitCode, 0);
   const Finished done = convert("10k:512M");

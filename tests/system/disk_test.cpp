@@ -1,7 +1,7 @@
 // Disks that are too small, and folders that are gone in the middle of a conversion.
 #include <fstream>
 
-#include "converter/build_folder.h"
+#include "converter/journal/build_folder.h"
 #include "converter/options.h"
 #include "core/error.h"
 #include "tests/support/interrupted.h"

@@ -1,7 +1,7 @@
 // A conversion that ends before its time: killed, stopped, out of disk, with other inputs or options the next time.
 #include <random>
 
-#include "converter/journal.h"
+#include "converter/journal/journal.h"
 #include "tests/support/interrupted.h"
 
 namespace strata::test {

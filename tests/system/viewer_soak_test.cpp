@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 
+#include "tests/support/paths.h"
 #include "tests/support/programs.h"
 
 namespace strata::test {
@@ -17,7 +18,7 @@ TEST(ViewerSoak, MovedAboutAtRandomItHoldsItsMemory) {
   const char* minutes = std::getenv("STRATA_SOAK_MINUTES");
   const Finished soak = runProgram(
       "/usr/bin/xvfb-run", {"-a", "-s", "-screen 0 1024x768x24 -noreset",
-                            STRATA_SOURCE_DIR "/tests/system/viewer_soak.sh", programPath("strata-view").string(),
+                            (sourceFolder() / "tests/system/viewer_soak.sh").string(), programPath("strata-view").string(),
                             store.string(), (folder / "").string(), minutes != nullptr ? minutes : "1"});
   EXPECT_EQ(soak.exitCode, 0) << soak.out << soak.err;
   std::printf("%s", soak.out.c_str());

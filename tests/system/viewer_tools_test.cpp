@@ -7,8 +7,8 @@
 
 #include "core/image.h"
 #include "tests/support/viewer_hand.h"
-#include "viewer/camera_control.h"
-#include "viewer/project.h"
+#include "viewer/camera/camera_control.h"
+#include "viewer/session/project.h"
 
 namespace strata::test {
 namespace {

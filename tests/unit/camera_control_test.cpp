@@ -1,4 +1,4 @@
-#include "viewer/camera_control.h"
+#include "viewer/camera/camera_control.h"
 
 #include <gtest/gtest.h>
 

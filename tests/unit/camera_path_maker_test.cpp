@@ -3,10 +3,10 @@
 #include <cmath>
 #include <random>
 
-#include "viewer/bench/stills.h"
-#include "viewer/camera_control.h"
-#include "viewer/detail_place.h"
-#include "viewer/path_maker.h"
+#include "viewer/camera/camera_control.h"
+#include "viewer/camera/dense_surface.h"
+#include "viewer/camera/path_maker.h"
+#include "viewer/camera/stills.h"
 
 namespace strata {
 namespace {
@@ -108,10 +108,10 @@ TEST(Stills, TheOverviewOfARoomIsFromInside) {
 }
 
 TEST(Stills, PointsGetAsLargeAsTheirDistanceOnTheScreen) {
-  Frame frame;
+  Picture frame;
   frame.width = 240;
   frame.height = 240;
-  frame.pointId.assign(240 * 240, Frame::kNoPoint);
+  frame.pointId.assign(240 * 240, Picture::kNoPoint);
   frame.depth.assign(240 * 240, INFINITY);
   for (std::size_t y = 0; y < 240; y += 4)
     for (std::size_t x = 0; x < 240; x += 4) {
@@ -123,7 +123,7 @@ TEST(Stills, PointsGetAsLargeAsTheirDistanceOnTheScreen) {
   EXPECT_NEAR(frontSpacing(frame, view).pixels, 4.0, 1e-9);
   // What shines through from behind does not count.
   for (std::size_t i = 0; i < frame.pointId.size(); i += 7)
-    if (frame.pointId[i] == Frame::kNoPoint) {
+    if (frame.pointId[i] == Picture::kNoPoint) {
       frame.pointId[i] = 2;
       frame.depth[i] = 20.0f;
     }

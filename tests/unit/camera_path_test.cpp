@@ -1,4 +1,4 @@
-#include "viewer/camera_path.h"
+#include "viewer/camera/camera_path.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "viewer/class_census.h"
+#include "viewer/session/class_census.h"
 
 #include <gtest/gtest.h>
 

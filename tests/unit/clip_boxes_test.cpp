@@ -1,10 +1,10 @@
-#include "viewer/clip_boxes.h"
+#include "viewer/tools/clip_boxes.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "viewer/camera_control.h"
+#include "viewer/camera/camera_control.h"
 
 namespace strata {
 namespace {

@@ -1,4 +1,4 @@
-#include "io/column_codec.h"
+#include "io/store/column_codec.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <utility>
 
-#include "io/huffman.h"
+#include "io/store/huffman.h"
 
 namespace strata {
 namespace {

@@ -1,4 +1,4 @@
-#include "viewer/draw_flags.h"
+#include "viewer/session/draw_flags.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "viewer/input_queue.h"
+#include "viewer/window/input_queue.h"
 
 #include <gtest/gtest.h>
 

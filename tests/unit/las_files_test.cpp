@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "core/error.h"
-#include "io/las_record.h"
-#include "io/las_source.h"
+#include "io/las/las_record.h"
+#include "io/las/las_source.h"
 #include "tests/support/sha256.h"
 #include "tests/support/test_data.h"
 

@@ -1,4 +1,4 @@
-#include "io/las_header.h"
+#include "io/las/las_header.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <random>
 
 #include "core/error.h"
-#include "io/las_record.h"
-#include "io/las_vlr.h"
+#include "io/las/las_record.h"
+#include "io/las/las_vlr.h"
 
 namespace strata {
 namespace {

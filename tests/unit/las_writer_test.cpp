@@ -6,11 +6,11 @@
 #include <random>
 
 #include "core/error.h"
-#include "io/las_header.h"
-#include "io/las_record.h"
-#include "io/las_source.h"
-#include "io/las_vlr.h"
-#include "io/scan_writer.h"
+#include "io/las/las_header.h"
+#include "io/las/las_record.h"
+#include "io/las/las_source.h"
+#include "io/las/las_vlr.h"
+#include "io/scan/scan_writer.h"
 #include "tests/support/test_data.h"
 
 namespace strata {

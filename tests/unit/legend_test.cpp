@@ -1,8 +1,8 @@
-#include "viewer/legend.h"
+#include "viewer/session/legend.h"
 
 #include <gtest/gtest.h>
 
-#include "render/colour_map.h"
+#include "render/picture/colour_map.h"
 
 namespace strata {
 namespace {

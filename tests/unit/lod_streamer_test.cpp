@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "io/node_codec.h"
+#include "io/store/node_codec.h"
 #include "lod/node_loader.h"
 #include "tests/support/lod_store.h"
 

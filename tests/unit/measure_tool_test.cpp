@@ -1,4 +1,4 @@
-#include "viewer/measure_tool.h"
+#include "viewer/tools/measure_tool.h"
 
 #include <gtest/gtest.h>
 

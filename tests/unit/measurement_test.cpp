@@ -1,4 +1,4 @@
-#include "viewer/measurement.h"
+#include "viewer/tools/measurement.h"
 
 #include <gtest/gtest.h>
 

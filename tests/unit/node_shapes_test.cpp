@@ -1,11 +1,11 @@
-#include "viewer/node_shapes.h"
+#include "viewer/tools/node_shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "tests/support/lod_store.h"
-#include "viewer/camera_control.h"
+#include "viewer/camera/camera_control.h"
 
 namespace strata {
 namespace {
@@ -52,7 +52,7 @@ TEST(NodeShapes, TheCoarseDepthIsBrightWhereItIsNearAndDarkWhereItIsOpen) {
   std::vector<float> depths(16, std::numeric_limits<float>::infinity());
   depths[3] = 5.0f;
   depths[7] = 50.0f;
-  Frame frame;
+  Picture frame;
   drawCoarseDepth(depths, frame);
   EXPECT_EQ(frame.width, 4);
   EXPECT_EQ(frame.colour[3] & 255u, 255u);

@@ -1,4 +1,4 @@
-#include "viewer/path_recorder.h"
+#include "viewer/camera/path_recorder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "io/pcd_source.h"
+#include "io/table/pcd_source.h"
 
 #include <algorithm>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "viewer/pick.h"
+#include "viewer/tools/pick.h"
 
 #include <gtest/gtest.h>
 
@@ -10,18 +10,18 @@
 namespace strata {
 namespace {
 
-Frame emptyFrame(int width, int height) {
+Picture emptyFrame(int width, int height) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  Frame frame;
+  Picture frame;
   frame.width = width;
   frame.height = height;
   frame.colour.assign(pixels, 0);
   frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  frame.pointId.assign(pixels, Frame::kNoPoint);
+  frame.pointId.assign(pixels, Picture::kNoPoint);
   return frame;
 }
 
-void put(Frame& frame, int x, int y, std::uint32_t id, float depth) {
+void put(Picture& frame, int x, int y, std::uint32_t id, float depth) {
   frame.pointId[static_cast<std::size_t>(y * frame.width + x)] = id;
   frame.depth[static_cast<std::size_t>(y * frame.width + x)] = depth;
 }
@@ -36,7 +36,7 @@ RenderList threeItems() {
 }
 
 TEST(Pick, TheIdOfThePixelNamesItemAndPoint) {
-  Frame frame = emptyFrame(8, 8);
+  Picture frame = emptyFrame(8, 8);
   put(frame, 3, 4, 12, 5.0f);
   const auto picked = drawnPointAt(threeItems(), frame, {3.7, 4.2}, 0);
   ASSERT_TRUE(picked);
@@ -52,7 +52,7 @@ TEST(Pick, TheIdOfThePixelNamesItemAndPoint) {
 }
 
 TEST(Pick, AClickBesideAPointTakesTheNearestWithinReachAndTheNearerOfTwo) {
-  Frame frame = emptyFrame(20, 20);
+  Picture frame = emptyFrame(20, 20);
   EXPECT_FALSE(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 5));
   put(frame, 14, 10, 3, 9.0f);
   EXPECT_FALSE(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 3));
@@ -64,7 +64,7 @@ TEST(Pick, AClickBesideAPointTakesTheNearestWithinReachAndTheNearerOfTwo) {
 }
 
 TEST(Pick, OutsideOfThePictureOrBeyondTheListThereIsNothing) {
-  Frame frame = emptyFrame(4, 4);
+  Picture frame = emptyFrame(4, 4);
   put(frame, 0, 0, 35, 1.0f);
   EXPECT_FALSE(drawnPointAt(threeItems(), frame, {0.5, 0.5}, 1));
   EXPECT_FALSE(drawnPointAt(threeItems(), frame, {-20.0, 900.0}, 3));

@@ -24,8 +24,8 @@ MeanPicture grey(int width, int height, double value) {
   return {width, height, std::vector<glm::dvec3>(pixels, glm::dvec3(value)), std::vector<std::uint8_t>(pixels, 1)};
 }
 
-Frame frameOf(const MeanPicture& picture) {
-  Frame frame;
+Picture frameOf(const MeanPicture& picture) {
+  Picture frame;
   frame.width = picture.width;
   frame.height = picture.height;
   for (const glm::dvec3& c : picture.colour) {
@@ -79,12 +79,12 @@ TEST(PictureQuality, OfAnEvenOffsetIsWhatTheFormulasSay) {
 
 TEST(PictureQuality, CountsHolesButNotWhatTheReferenceLeavesEmpty) {
   MeanPicture reference = grey(40, 20, 100.0);
-  Frame drawn = frameOf(reference);
+  Picture drawn = frameOf(reference);
   for (std::size_t i = 0; i < 400; ++i) reference.covered[i] = 0;
   for (std::size_t i = 0; i < 400; ++i) drawn.colour[i] = 0;
   EXPECT_EQ(pictureQuality(reference, drawn).psnr, std::numeric_limits<double>::infinity());
   for (std::size_t i = 400; i < 500; ++i) {
-    drawn.pointId[i] = Frame::kNoPoint;
+    drawn.pointId[i] = Picture::kNoPoint;
     drawn.colour[i] = 0;
   }
   const PictureQuality quality = pictureQuality(reference, drawn);
@@ -131,7 +131,7 @@ TEST(SsimMap, IsThatOfTheDefinitionInEveryWindow) {
 }
 
 TEST(Psnr, OfTwoFramesCountsEveryPixel) {
-  Frame a = frameOf(grey(10, 10, 50.0)), b = a;
+  Picture a = frameOf(grey(10, 10, 50.0)), b = a;
   EXPECT_EQ(psnr(a, b), std::numeric_limits<double>::infinity());
   b.colour[0] ^= 0xff;  // red 50 becomes 205
   EXPECT_NEAR(psnr(a, b), 10.0 * std::log10(255.0 * 255.0 * 300.0 / (155.0 * 155.0)), 1e-9);

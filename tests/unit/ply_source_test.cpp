@@ -1,10 +1,10 @@
-#include "io/ply_source.h"
+#include "io/table/ply_source.h"
 
 #include <algorithm>
 #include <fstream>
 
 #include "core/error.h"
-#include "io/ply_header.h"
+#include "io/table/ply_header.h"
 #include "tests/support/pcl_oracle.h"
 #include "tests/support/scan_points.h"
 

@@ -1,8 +1,8 @@
 #include <fstream>
 
 #include "core/error.h"
-#include "io/ply_source.h"
-#include "io/scan_writer.h"
+#include "io/scan/scan_writer.h"
+#include "io/table/ply_source.h"
 #include "tests/support/scan_points.h"
 
 namespace strata {

@@ -1,4 +1,4 @@
-#include "converter/progress_display.h"
+#include "converter/programs/progress_display.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "converter/conversion_summary.h"
+#include "converter/programs/conversion_summary.h"
 #include "tests/support/test_data.h"
 
 namespace strata {

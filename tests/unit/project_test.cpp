@@ -1,4 +1,4 @@
-#include "viewer/project.h"
+#include "viewer/session/project.h"
 
 #include <gtest/gtest.h>
 

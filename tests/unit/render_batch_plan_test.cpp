@@ -1,4 +1,4 @@
-#include "render/batch_plan.h"
+#include "render/plan/batch_plan.h"
 
 #include <gtest/gtest.h>
 

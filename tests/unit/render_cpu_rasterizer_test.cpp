@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "render/batch_plan.h"
-#include "render/cpu_rasterizer.h"
+#include "render/cpu/cpu_rasterizer.h"
+#include "render/plan/batch_plan.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -16,10 +16,10 @@ const glm::dvec3 kUtm(456789.123, 5412345.678, 312.5);
 /// No symmetry of a grid, on which many points would have one depth and rounding decide between them.
 const glm::dvec3 kDirection(1.0, 0.83, -0.71);
 
-Frame drawn(const RenderList& list, const View& view, int threads = 1, const DrawOptions& options = {}) {
+Picture drawn(const RenderList& list, const View& view, int threads = 1, const DrawOptions& options = {}) {
   RasterizerOptions rasterizerOptions;
   rasterizerOptions.threads = threads;
-  Frame frame;
+  Picture frame;
   createCpuRasterizer(rasterizerOptions)->draw(list, view, options, frame);
   return frame;
 }
@@ -48,9 +48,9 @@ std::vector<glm::dvec3> randomPoints(std::uint32_t count, const glm::dvec3& lo, 
   return points;
 }
 
-double coveredPart(const Frame& frame) {
+double coveredPart(const Picture& frame) {
   std::size_t covered = 0;
-  for (const std::uint32_t id : frame.pointId) covered += id != Frame::kNoPoint;
+  for (const std::uint32_t id : frame.pointId) covered += id != Picture::kNoPoint;
   return static_cast<double>(covered) / static_cast<double>(frame.pointId.size());
 }
 
@@ -90,8 +90,8 @@ TEST(CpuRasterizer, GivesTheSameBitsWithOneAndTwoThreads) {
   options.pointSize = 2;
   options.edl = true;
   for (const View& view : test::viewsAround(test::boundsOf(list), 8, 512, 512)) {
-    const Frame one = drawn(list, view, 1, options), two = drawn(list, view, 2, options),
-                again = drawn(list, view, 2, options);
+    const Picture one = drawn(list, view, 1, options), two = drawn(list, view, 2, options),
+                  again = drawn(list, view, 2, options);
     EXPECT_EQ(one.pointId, two.pointId);
     EXPECT_EQ(one.depth, two.depth);
     EXPECT_EQ(one.colour, two.colour);
@@ -105,10 +105,10 @@ TEST(CpuRasterizer, GivesATieToTheLowerId) {
   View view;
   view.eye = {0.0, 0.0, 0.0};
   view.target = {0.0, 5.0, 0.0};
-  const Frame frame = drawn(list, view, 2);
+  const Picture frame = drawn(list, view, 2);
   std::size_t covered = 0;
   for (const std::uint32_t id : frame.pointId) {
-    if (id == Frame::kNoPoint) continue;
+    if (id == Picture::kNoPoint) continue;
     ++covered;
     EXPECT_EQ(id, 0u);
   }
@@ -128,13 +128,13 @@ TEST(CpuRasterizer, MatchesAtTheOriginAndAtUtmCoordinates) {
     view.width = view.height = 512;
     view.eye = {0.01 * centimetres, -3.0, 0.5};
     view.target = {0.01 * centimetres, 0.0, 0.0};
-    const Frame a = drawn(here, view);
+    const Picture a = drawn(here, view);
     view.eye += far;
     view.target += far;
-    const Frame b = drawn(there, view);
+    const Picture b = drawn(there, view);
     std::size_t covered = 0, different = 0;
     for (std::size_t i = 0; i < a.pointId.size(); ++i) {
-      covered += a.pointId[i] != Frame::kNoPoint;
+      covered += a.pointId[i] != Picture::kNoPoint;
       different += a.pointId[i] != b.pointId[i];
     }
     EXPECT_GT(covered, a.pointId.size() / 4);
@@ -157,7 +157,7 @@ TEST(CpuRasterizer, DrawsNothingOfNothing) {
 TEST(CpuRasterizer, DrawsABatchOfOnePointAsOnePixel) {
   const RenderList list = test::makeList({test::makeNode({}, {kUtm}, 0.001)});
   const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 201, 1.0);
-  const Frame frame = drawn(list, view);
+  const Picture frame = drawn(list, view);
   EXPECT_EQ(std::count(frame.pointId.begin(), frame.pointId.end(), 0u), 1);
   expectOraclesPicture(list, view);
 }
@@ -170,7 +170,7 @@ TEST(CpuRasterizer, LeavesOutWhatIsBehindTheEyeOrNearerThanTheNearPlane) {
   view.target = {0.3, 1.0, 0.1};
   for (const double nearPlane : {1e-3, 0.5, 0.9}) {
     view.nearPlane = nearPlane;
-    const Frame frame = drawn(list, view);
+    const Picture frame = drawn(list, view);
     for (const float depth : frame.depth) EXPECT_GE(depth, static_cast<float>(nearPlane));
     expectOraclesPicture(list, view);
   }
@@ -195,7 +195,7 @@ TEST(CpuRasterizer, DrawsImagesOfOnePixelAndOf8192Squared) {
   View view = viewOfBox(test::boundsOf(list), kDirection, 1, 1, 1.0);
   EXPECT_EQ(drawn(list, view).colour.size(), 1u);
   view.width = view.height = 8192;
-  const Frame frame = drawn(list, view, 2);
+  const Picture frame = drawn(list, view, 2);
   EXPECT_EQ(frame.colour.size(), std::size_t{8192} * 8192);
   EXPECT_GT(coveredPart(frame), 1e-3);
 }
@@ -211,7 +211,7 @@ TEST(CpuRasterizer, CountsWhatItDrewAndCulled) {
   const RenderList list = test::makeTown(glm::dvec3(0.0), 100.0, 100000, 15);
   std::uint32_t batches = 0;
   for (const RenderItem& item : list.items) batches += static_cast<std::uint32_t>(item.node->batches.size());
-  Frame frame;
+  Picture frame;
   const auto rasterizer = createCpuRasterizer({});
   for (const View& view : test::viewsAround(test::boundsOf(list), 8, 256, 256)) {
     const DrawStats stats = rasterizer->draw(list, view, {}, frame);

@@ -1,4 +1,4 @@
-#include "render/page_allocator.h"
+#include "render/gpu/page_allocator.h"
 
 #include <gtest/gtest.h>
 

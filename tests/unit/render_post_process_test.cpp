@@ -1,4 +1,4 @@
-#include "render/post_process.h"
+#include "render/picture/post_process.h"
 
 #include <gtest/gtest.h>
 
@@ -76,8 +76,8 @@ TEST(Dilate, GivesPointsOfGrowingSizeTheSameAsDrawingEachAlone) {
 
 std::vector<float> scratch;
 
-Frame flatFrame(int side, float depth) {
-  Frame frame;
+Picture flatFrame(int side, float depth) {
+  Picture frame;
   frame.width = frame.height = side;
   const auto count = static_cast<std::size_t>(side * side);
   frame.depth.assign(count, depth);
@@ -88,10 +88,10 @@ Frame flatFrame(int side, float depth) {
 
 TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
   const ThreadPool pool(1);
-  Frame frame = flatFrame(9, 5.0f);
+  Picture frame = flatFrame(9, 5.0f);
   for (std::size_t i = 0; i < 27; ++i) {
     frame.depth[i] = std::numeric_limits<float>::infinity();
-    frame.pointId[i] = Frame::kNoPoint;
+    frame.pointId[i] = Picture::kNoPoint;
   }
   const std::vector<std::uint32_t> before = frame.colour;
   eyeDomeLighting(frame, 1.0f, PointSizes(1), scratch, pool);
@@ -100,7 +100,7 @@ TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
 
 TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
   const ThreadPool pool(1);
-  Frame frame = flatFrame(9, 5.0f);
+  Picture frame = flatFrame(9, 5.0f);
   for (std::size_t i = 0; i < frame.depth.size(); ++i)
     if (i % 9 >= 5) frame.depth[i] = 6.0f;
   const std::vector<std::uint32_t> before = frame.colour;
@@ -116,7 +116,7 @@ TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
 
 TEST(EyeDomeLighting, DoesNotDependOnTheScaleOfTheScene) {
   const ThreadPool pool(1);
-  Frame small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
+  Picture small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
   small.depth[12] *= 1.125f;
   large.depth[12] *= 1.125f;
   eyeDomeLighting(small, 0.3f, PointSizes(1), scratch, pool);

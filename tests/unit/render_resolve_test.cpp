@@ -1,4 +1,4 @@
-#include "render/resolve.h"
+#include "render/picture/resolve.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/error.h"
-#include "render/colour_map.h"
-#include "render/rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/picture/colour_map.h"
 #include "tests/support/synthetic_nodes.h"
 
 namespace strata {
@@ -37,7 +37,7 @@ TEST(Resolve, FindsThePointOfEveryId) {
   VisibilityBuffer buffer{static_cast<int>(list.pointCount), 1, {}};
   for (std::uint32_t id = 0; id < list.pointCount; ++id)
     buffer.pixels.push_back(packPixel(std::bit_cast<std::uint32_t>(1.0f), id));
-  Frame frame;
+  Picture frame;
   resolveFrame(list, View{}, {}, buffer, ThreadPool(2), frame);
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < list.items.size(); ++i)
@@ -52,9 +52,9 @@ TEST(Resolve, ColoursByTheModeThatIsAskedFor) {
   const RenderList list = test::makeList({node});
   const auto colours = [&](const DrawOptions& options) {
     VisibilityBuffer buffer{3, 1, {packPixel(0x3f800000u, 0), packPixel(0x3f800000u, 1), kEmptyPixel}};
-    Frame frame;
+    Picture frame;
     resolveFrame(list, View{}, options, buffer, ThreadPool(1), frame);
-    EXPECT_EQ(frame.pointId[2], Frame::kNoPoint);
+    EXPECT_EQ(frame.pointId[2], Picture::kNoPoint);
     EXPECT_EQ(frame.depth[2], std::numeric_limits<float>::infinity());
     EXPECT_EQ(frame.colour[2], packColour(1, 2, 3));
     return std::pair{frame.colour[0], frame.colour[1]};

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <map>
 
-#include "render/colour_map.h"
-#include "render/cpu_draw.h"
-#include "render/post_process.h"
-#include "render/rasterizer.h"
+#include "render/cpu/cpu_draw.h"
+#include "render/create_rasterizer.h"
+#include "render/picture/colour_map.h"
+#include "render/picture/post_process.h"
 #include "tests/support/oracle.h"
 #include "tests/support/synthetic_nodes.h"
 
@@ -21,16 +21,16 @@ RenderList town() { return test::makeTown(kUtm, 200.0, 150000, 1, 6); }
 
 View aView(const RenderList& list, int size = 512) { return test::viewsAround(test::boundsOf(list), 5, size, size)[1]; }
 
-Frame drawn(const RenderList& list, const View& view, const DrawOptions& options, int threads = 2) {
+Picture drawn(const RenderList& list, const View& view, const DrawOptions& options, int threads = 2) {
   RasterizerOptions some;
   some.threads = threads;
-  Frame frame;
+  Picture frame;
   createRasterizer(Backend::cpu, some, nullptr)->draw(list, view, options, frame);
   return frame;
 }
 
 void expectOraclesPicture(const RenderList& list, const View& view, const DrawOptions& options) {
-  const Frame frame = drawn(list, view, options);
+  const Picture frame = drawn(list, view, options);
   const test::Comparison result = test::compareToOracle(list, view, frame, options);
   EXPECT_GT(result.covered, 500u);
   EXPECT_GE(result.agreement(), 0.999) << result.different << " of " << result.covered << " pixels differ";
@@ -79,7 +79,7 @@ TEST(HighQualityShading, IsTheMeanColourOfThePointsWithinOnePerCentOfTheFront) {
   for (const View& view : test::viewsAround(test::boundsOf(list), 4, 256, 256)) {
     DrawOptions options;
     options.shading = Shading::highQuality;
-    const Frame frame = drawn(list, view, options);
+    const Picture frame = drawn(list, view, options);
     std::vector<glm::dvec4> sums(frame.colour.size(), glm::dvec4(0.0));
     for (const Seen& point : allSeen(list, view)) {
       if (point.depth > 1.01 * static_cast<double>(frame.depth[point.pixel])) continue;
@@ -88,7 +88,7 @@ TEST(HighQualityShading, IsTheMeanColourOfThePointsWithinOnePerCentOfTheFront) {
     }
     std::size_t covered = 0, different = 0, blended = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (frame.pointId[i] == Frame::kNoPoint) continue;
+      if (frame.pointId[i] == Picture::kNoPoint) continue;
       ++covered;
       blended += sums[i].w > 1.5;
       for (int channel = 0; channel < 3; ++channel)
@@ -106,9 +106,9 @@ TEST(HighQualityShading, IsTheMeanColourOfThePointsWithinOnePerCentOfTheFront) {
 TEST(HighQualityShading, LeavesFrontPointsAndDepthsAsTheyAre) {
   const RenderList list = town();
   DrawOptions options;
-  const Frame plain = drawn(list, aView(list), options);
+  const Picture plain = drawn(list, aView(list), options);
   options.shading = Shading::highQuality;
-  const Frame blended = drawn(list, aView(list), options), one = drawn(list, aView(list), options, 1);
+  const Picture blended = drawn(list, aView(list), options), one = drawn(list, aView(list), options, 1);
   EXPECT_EQ(plain.pointId, blended.pointId);
   EXPECT_EQ(plain.depth, blended.depth);
   EXPECT_NE(plain.colour, blended.colour);
@@ -124,10 +124,10 @@ TEST(HighQualityShading, GivesLargePointsTheColourOfThePixelTheyComeFrom) {
   DrawOptions options;
   options.shading = Shading::highQuality;
   options.pointSize = 5;
-  const Frame frame = drawn(list, view, options);
+  const Picture frame = drawn(list, view, options);
   std::map<std::uint32_t, int> colours;
   for (std::size_t i = 0; i < frame.colour.size(); ++i)
-    if (frame.pointId[i] != Frame::kNoPoint) ++colours[frame.colour[i]];
+    if (frame.pointId[i] != Picture::kNoPoint) ++colours[frame.colour[i]];
   ASSERT_EQ(colours.size(), 1u);
   EXPECT_EQ(colours.begin()->second, 25);
 }
@@ -148,7 +148,7 @@ TEST(Overdraw, CountsThePointsOfEveryPixel) {
   for (std::size_t i = 0; i < counts.size(); ++i) different += counts[i] != target.buffer.counts[i];
   EXPECT_LE(different, counts.size() / 200);
   EXPECT_GT(*std::max_element(counts.begin(), counts.end()), 5u);
-  const Frame frame = drawn(list, view, options);
+  const Picture frame = drawn(list, view, options);
   const auto largest = static_cast<std::size_t>(
       std::max_element(target.buffer.counts.begin(), target.buffer.counts.end()) - target.buffer.counts.begin());
   EXPECT_EQ(frame.colour[largest], heatColour(1.0));
@@ -214,7 +214,7 @@ TEST(Classes, AreLeftOutWhereTheyAreNotWanted) {
   for (const std::size_t wanted : {2u, 6u, 11u}) options.classes.set(wanted);
   for (const View& view : test::viewsAround(test::boundsOf(list), 4, 300, 300))
     expectOraclesPicture(list, view, options);
-  const Frame frame = drawn(list, aView(list), options);
+  const Picture frame = drawn(list, aView(list), options);
   std::uint32_t firstId = 0;
   for (const RenderItem& item : list.items) {
     for (const std::uint32_t id : frame.pointId)
@@ -240,7 +240,7 @@ TEST(Gaze, LeavesOutNodesThatAreSmallAndFarFromIt) {
   planBatches(list, view, options, target.plan);
   clearTarget(target, pool);
   drawBatches({&target, 1}, options, pool);
-  Frame frame;
+  Picture frame;
   for (const PackedPixel pixel : target.buffer.pixels) frame.pointId.push_back(pixelId(pixel));
   const test::Comparison result = test::compareToOracle(list, view, frame, options);
   EXPECT_GE(result.agreement(), 0.999);
@@ -265,11 +265,11 @@ TEST(SeveralViews, AreTheSameAsOneAfterTheOther) {
       options.pointSize = mode == 2 ? 2 : 1;
       if (mode == 2) options.clip.boxes = {{kUtm - 40.0, kUtm + 60.0}};
       const View views[] = {left, right, third};
-      Frame frames[3];
+      Picture frames[3];
       const DrawStats stats = createRasterizer(Backend::cpu, {}, nullptr)->drawViews(list, views, options, frames);
       std::uint64_t points = 0;
       for (int v = 0; v < 3; ++v) {
-        Frame alone;
+        Picture alone;
         points += createRasterizer(Backend::cpu, {}, nullptr)->draw(list, views[v], options, alone).pointsDrawn;
         EXPECT_EQ(frames[v].pointId, alone.pointId);
         EXPECT_EQ(frames[v].depth, alone.depth);
@@ -287,7 +287,7 @@ TEST(Background, MayRunFromOneColourAtTheTopToAnotherBelow) {
   View view;
   view.width = 3;
   view.height = 11;
-  const Frame frame = drawn({}, view, options);
+  const Picture frame = drawn({}, view, options);
   EXPECT_EQ(frame.colour[0], packColour(10, 20, 30));
   EXPECT_EQ(frame.colour[5 * 3], packColour(60, 120, 15));
   EXPECT_EQ(frame.colour[10 * 3 + 2], packColour(110, 220, 0));
@@ -300,9 +300,9 @@ TEST(Precision, IsShownAsItWasDrawn) {
   for (const View& view : test::viewsAround(test::boundsOf(list), 6, 200, 200)) {
     DrawPlan plan;
     planBatches(list, view, options, plan);
-    const Frame frame = drawn(list, view, options);
+    const Picture frame = drawn(list, view, options);
     for (std::size_t i = 0; i < frame.colour.size(); i += 7) {
-      if (frame.pointId[i] == Frame::kNoPoint) continue;
+      if (frame.pointId[i] == Picture::kNoPoint) continue;
       const auto batch = std::find_if(plan.batches.begin(), plan.batches.end(), [&](const PlannedBatch& b) {
         return frame.pointId[i] - b.firstId < b.pointCount;
       });
@@ -382,7 +382,7 @@ TEST(NearPlane, HoldsPointsThatLieOnIt) {
   view.target = {0.0, 1.0, 0.0};
   view.nearPlane = 0.5;
   view.width = view.height = 401;
-  const Frame frame = drawn(list, view, {});
+  const Picture frame = drawn(list, view, {});
   std::size_t onPlane = 0;
   for (const float depth : frame.depth) {
     EXPECT_GE(depth, 0.5f);

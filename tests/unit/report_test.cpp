@@ -9,11 +9,13 @@
 #include <random>
 
 #include "core/error.h"
+#include "core/percentile.h"
+#include "core/readable.h"
+#include "io/file/text_file.h"
 #include "tests/support/test_data.h"
 #include "viewer/bench/compare.h"
 #include "viewer/bench/html_plot.h"
-#include "viewer/bench/html_text.h"
-#include "viewer/text_file.h"
+#include "viewer/output/html_text.h"
 
 namespace strata {
 namespace {

@@ -1,4 +1,5 @@
-#include "converter/sampled_source.h"
+#include "converter/survey/sampled_source.h"
+#include "io/open_scans.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +18,7 @@ std::uint64_t readAll(const Sources& sources) {
 }
 
 TEST(SampledSource, TakesAboutAsManyPointsAsAskedFromAllOverTheScan) {
-  const Sources whole = openSources({"synthetic:plane?points=40000000"}, {});
+  const Sources whole = openScans({"synthetic:plane?points=40000000"}, {});
   const Sources sampled = sampleSources(whole, 100'000);
   const std::uint64_t points = readAll(sampled);
   EXPECT_GE(points, 90'000u);
@@ -26,20 +27,20 @@ TEST(SampledSource, TakesAboutAsManyPointsAsAskedFromAllOverTheScan) {
 }
 
 TEST(SampledSource, TakesEveryPointOfAScanThatIsSmallerThanAsked) {
-  const Sources whole = openSources({"synthetic:plane?points=1500000", "synthetic:sphere?points=3"}, {});
+  const Sources whole = openScans({"synthetic:plane?points=1500000", "synthetic:sphere?points=3"}, {});
   EXPECT_EQ(readAll(sampleSources(whole, 2'000'000)), 1'500'003u);
 }
 
 TEST(SampledSource, TakesOneScanInTwoWhereThereAreTooMany) {
   std::vector<std::string> inputs(200, "synthetic:plane?points=1000");
-  const Sources whole = openSources(inputs, {});
+  const Sources whole = openScans(inputs, {});
   const Sources sampled = sampleSources(whole, 100'000);
   EXPECT_EQ(sampled.size(), 100u);
   EXPECT_EQ(readAll(sampled), 100'000u);
 }
 
 TEST(SampledSource, SaysNoMorePointsThanItCanHaveAndKeepsTheFrame) {
-  const Sources whole = openSources({"synthetic:city?points=3000000"}, {});
+  const Sources whole = openScans({"synthetic:city?points=3000000"}, {});
   const Sources sampled = sampleSources(whole, 1000);
   ASSERT_EQ(sampled.size(), 1u);
   EXPECT_EQ(sampled.front()->info().pointCount, readAll(sampled));

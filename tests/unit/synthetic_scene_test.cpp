@@ -2,11 +2,11 @@
 
 #include <cmath>
 
-#include "io/synthetic_city.h"
-#include "io/synthetic_random.h"
-#include "io/synthetic_scanner.h"
+#include "io/synthetic/city.h"
+#include "io/synthetic/random.h"
+#include "io/synthetic/scanner.h"
 
-namespace strata {
+namespace strata::synthetic {
 namespace {
 
 constexpr std::uint64_t kPoints = 1'000'000;
@@ -169,4 +169,4 @@ TEST(SyntheticRoom, LosesNoRayThroughItsWalls) {
 }
 
 }  // namespace
-}  // namespace strata
+}  // namespace strata::synthetic

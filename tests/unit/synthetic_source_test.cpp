@@ -1,4 +1,4 @@
-#include "io/synthetic_source.h"
+#include "io/synthetic/synthetic_source.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 std::string refusal(const std::string& spec) {
   try {
-    openSynthetic(spec);
+    synthetic::openScan(spec);
   } catch (const UsageError& error) {
     return error.what();
   }
@@ -38,14 +38,14 @@ Key keyOf(const glm::dvec3& p) {
 }
 
 TEST(SyntheticSpec, DefaultsToAMillionPoints) {
-  EXPECT_EQ(openSynthetic("synthetic:plane")->info().pointCount, 1'000'000u);
+  EXPECT_EQ(synthetic::openScan("synthetic:plane")->info().pointCount, 1'000'000u);
 }
 
 TEST(SyntheticSpec, TakesCountsAsPowersOfTenUpTo1e11) {
-  EXPECT_EQ(openSynthetic("synthetic:plane?points=1e11&seed=18446744073709551615")->info().pointCount,
+  EXPECT_EQ(synthetic::openScan("synthetic:plane?points=1e11&seed=18446744073709551615")->info().pointCount,
             100'000'000'000u);
-  EXPECT_EQ(openSynthetic("synthetic:stack?seed=7&points=2.5e3")->info().pointCount, 2500u);
-  EXPECT_EQ(openSynthetic("synthetic:sphere?points=1")->info().pointCount, 1u);
+  EXPECT_EQ(synthetic::openScan("synthetic:stack?seed=7&points=2.5e3")->info().pointCount, 2500u);
+  EXPECT_EQ(synthetic::openScan("synthetic:sphere?points=1")->info().pointCount, 1u);
 }
 
 TEST(SyntheticSpec, RefusesAnUnknownNameAndNamesTheChoices) {
@@ -76,7 +76,7 @@ TEST(SyntheticSpec, RefusesValuesThatAreNoCount) {
 }
 
 TEST(SyntheticSource, DescribesItself) {
-  const auto source = openSynthetic("synthetic:city?points=2500001");
+  const auto source = synthetic::openScan("synthetic:city?points=2500001");
   const SourceInfo& info = source->info();
   EXPECT_EQ(info.format, "synthetic city");
   EXPECT_EQ(info.path, "synthetic:city?points=2500001");
@@ -88,12 +88,13 @@ TEST(SyntheticSource, DescribesItself) {
   EXPECT_GE(info.layout.find(attribute::kRgb), 0);
   EXPECT_GE(info.layout.find(attribute::kIntensity), 0);
   EXPECT_GE(info.layout.find(attribute::kClassification), 0);
-  EXPECT_GE(openSynthetic("synthetic:sphere")->info().layout.find(attribute::kNormal), 0);
+  EXPECT_GE(synthetic::openScan("synthetic:sphere")->info().layout.find(attribute::kNormal), 0);
 }
 
 TEST(SyntheticStack, HoldsEveryGridPointOnceIn170Planes) {
   constexpr std::size_t kSide = 16;
-  const auto points = positionsOf(*openSynthetic("synthetic:stack?points=" + std::to_string(170 * kSide * kSide)));
+  const auto points =
+      positionsOf(*synthetic::openScan("synthetic:stack?points=" + std::to_string(170 * kSide * kSide)));
   std::set<Key> distinct;
   std::map<long long, std::size_t> layers;
   for (const glm::dvec3& p : points) {
@@ -106,14 +107,14 @@ TEST(SyntheticStack, HoldsEveryGridPointOnceIn170Planes) {
 }
 
 TEST(SyntheticStack, IsShuffled) {
-  const auto points = positionsOf(*openSynthetic("synthetic:stack?points=43520"));
+  const auto points = positionsOf(*synthetic::openScan("synthetic:stack?points=43520"));
   std::size_t neighbours = 0;
   for (std::size_t i = 1; i < points.size(); ++i) neighbours += glm::distance(points[i], points[i - 1]) < 0.02;
   EXPECT_LT(neighbours, points.size() / 100);
 }
 
 TEST(SyntheticSphere, LiesOnTheSphereWithItsNormals) {
-  const auto source = openSynthetic("synthetic:sphere?points=5000");
+  const auto source = synthetic::openScan("synthetic:sphere?points=5000");
   const PointLayout& layout = source->info().layout;
   const std::size_t offset = layout.offset(static_cast<std::size_t>(layout.find(attribute::kNormal)));
   PointBlock block;
@@ -130,7 +131,7 @@ TEST(SyntheticSphere, LiesOnTheSphereWithItsNormals) {
 }
 
 TEST(SyntheticDegenerate, MixesItsDistributions) {
-  const auto points = positionsOf(*openSynthetic("synthetic:degenerate?points=100000"));
+  const auto points = positionsOf(*synthetic::openScan("synthetic:degenerate?points=100000"));
   std::map<Key, std::size_t> copies;
   std::size_t far = 0, plane = 0, cube = 0;
   for (const glm::dvec3& p : points) {
@@ -148,10 +149,10 @@ TEST(SyntheticDegenerate, MixesItsDistributions) {
 }
 
 TEST(SyntheticTerrain, GrowsWithThePointsUpToALimit) {
-  EXPECT_NEAR(openSynthetic("synthetic:terrain?points=1e6")->info().bounds.size().x, 1000.0, 1.0);
-  EXPECT_NEAR(openSynthetic("synthetic:terrain?points=4e6")->info().bounds.size().y, 2000.0, 1.0);
-  EXPECT_EQ(openSynthetic("synthetic:terrain?points=1e10")->info().bounds.size(),
-            openSynthetic("synthetic:terrain?points=1e11")->info().bounds.size());
+  EXPECT_NEAR(synthetic::openScan("synthetic:terrain?points=1e6")->info().bounds.size().x, 1000.0, 1.0);
+  EXPECT_NEAR(synthetic::openScan("synthetic:terrain?points=4e6")->info().bounds.size().y, 2000.0, 1.0);
+  EXPECT_EQ(synthetic::openScan("synthetic:terrain?points=1e10")->info().bounds.size(),
+            synthetic::openScan("synthetic:terrain?points=1e11")->info().bounds.size());
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
-#include "io/text_source.h"
+#include "io/table/text_source.h"
 
 #include <algorithm>
 #include <fstream>
 
 #include "core/error.h"
-#include "io/text_format.h"
+#include "io/table/text_format.h"
 #include "tests/support/scan_points.h"
 
 namespace strata {

@@ -3,12 +3,12 @@
 
 #include "core/error.h"
 #include "core/program.h"
+#include "core/readable.h"
+#include "io/file/text_file.h"
 #include "viewer/bench/bench_options.h"
 #include "viewer/bench/bench_run.h"
 #include "viewer/bench/compare.h"
-#include "viewer/bench/html_text.h"
-#include "viewer/path_maker.h"
-#include "viewer/text_file.h"
+#include "viewer/camera/path_maker.h"
 
 namespace strata {
 namespace {

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "viewer/command_line.h"
+#include "render/create_rasterizer.h"
+#include "viewer/session/command_line.h"
 
 namespace strata {
 namespace {

@@ -12,13 +12,14 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "viewer/bench/html_text.h"
+#include "core/percentile.h"
+#include "core/readable.h"
+#include "io/file/text_file.h"
 #include "viewer/bench/jump_watch.h"
 #include "viewer/bench/page_cache.h"
 #include "viewer/bench/path_player.h"
-#include "viewer/bench/stills.h"
 #include "viewer/bench/trace_file.h"
-#include "viewer/text_file.h"
+#include "viewer/camera/stills.h"
 
 namespace strata {
 namespace {

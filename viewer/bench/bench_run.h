@@ -1,7 +1,7 @@
 #pragma once
 #include <memory>
 
-#include "io/store.h"
+#include "io/store/store.h"
 #include "viewer/bench/bench_options.h"
 #include "viewer/bench/report.h"
 

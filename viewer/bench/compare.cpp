@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "viewer/bench/html_text.h"
+#include "io/file/text_file.h"
 #include "viewer/bench/measures.h"
-#include "viewer/text_file.h"
+#include "viewer/output/html_text.h"
 
 namespace strata {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "viewer/bench/html_text.h"
+#include "viewer/output/html_text.h"
 
 namespace strata {
 namespace {

@@ -72,9 +72,6 @@ inline constexpr double kHitchMs = 60.0;
 inline constexpr double kHitchRatio = 1.5;
 bool isHitch(double previousMs, double frameMs);
 
-/// The p-th percentile, 0 to 100, linear between ranks (Hyndman and Fan 1996, type 7). 0 for no values.
-double percentile(std::span<const double> values, double p);
-
 /// The part of the measures that follows from the frames alone.
 BenchMeasures measureFrames(std::span<const FrameRecord> frames);
 

@@ -12,7 +12,7 @@
 #include "lod/hierarchy_index.h"
 #include "viewer/bench/jump_watch.h"
 #include "viewer/bench/screen_spacing.h"
-#include "viewer/bench/video.h"
+#include "viewer/output/video.h"
 
 namespace strata {
 namespace {
@@ -40,7 +40,7 @@ class PictureShelf {
     shownEvery_ = std::max(1, (count + kReportPictures - 1) / kReportPictures);
   }
 
-  void offer(const FrameRecord& record, const Frame& frame) {
+  void offer(const FrameRecord& record, const Picture& frame) {
     const bool marked = std::binary_search(marked_.begin(), marked_.end(), record.index);
     if (!marked && (every_ <= 0 || record.index % every_ != 0)) return;
     char file[40], title[64];
@@ -74,9 +74,9 @@ class PictureShelf {
   std::vector<ReportPicture> waiting_, done_;
 };
 
-std::uint64_t coveredPixels(const Frame& frame) {
+std::uint64_t coveredPixels(const Picture& frame) {
   return frame.pointId.size() -
-         static_cast<std::uint64_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Frame::kNoPoint));
+         static_cast<std::uint64_t>(std::count(frame.pointId.begin(), frame.pointId.end(), Picture::kNoPoint));
 }
 
 /// The stages of a draw, as its stats say how long they took, one after the other from `begin` to at most `end`.
@@ -92,7 +92,7 @@ void traceStages(TraceLane& lane, const DrawStats& stats, Clock::time_point begi
 }
 
 FrameRecord drawFrame(const View& view, const PlayOptions& options, int index, Streamer& streamer,
-                      Rasterizer& rasterizer, Frame& frame, const RenderList*& drawn) {
+                      Rasterizer& rasterizer, Picture& frame, const RenderList*& drawn) {
   FrameRecord record;
   const Clock::time_point start = Clock::now();
   const RenderList& list = streamer.beginFrame();
@@ -123,8 +123,8 @@ FrameRecord drawFrame(const View& view, const PlayOptions& options, int index, S
 
 }  // namespace
 
-Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer) {
-  Frame frame;
+Picture drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer) {
+  Picture frame;
   streamer.setView(view);
   streamer.waitUntilComplete(kLongestWait);
   const RenderList& list = streamer.beginFrame();
@@ -157,7 +157,7 @@ PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer
     jumps.see(streamer.beginFrame(), msSince(opened));
   }
   played.timeToFullDetailMs = msSince(opened);
-  Frame frame = drawComplete(firstView, options.draw, streamer, rasterizer);
+  Picture frame = drawComplete(firstView, options.draw, streamer, rasterizer);
 
   PictureShelf shelf(options, path);
   std::optional<VideoWriter> video;

@@ -2,13 +2,14 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
+#include "core/draw_options.h"
+#include "core/picture.h"
 #include "lod/streamer.h"
 #include "lod/trace.h"
 #include "render/rasterizer.h"
 #include "viewer/bench/report.h"
-#include "viewer/camera_path.h"
-#include "viewer/drawing.h"
+#include "viewer/camera/camera_path.h"
+#include "viewer/session/drawing.h"
 
 namespace strata {
 
@@ -39,6 +40,6 @@ struct PlayedPath {
 PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer);
 
 /// Draws until everything in the list is on the GPU: one picture in full detail. Waits for the streamer first.
-Frame drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer);
+Picture drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer);
 
 }  // namespace strata

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "io/checksum.h"
-#include "viewer/text_file.h"
+#include "io/file/checksum.h"
+#include "io/file/text_file.h"
 
 namespace strata {
 namespace {

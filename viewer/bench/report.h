@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "viewer/bench/machine.h"
 #include "viewer/bench/measures.h"
 

@@ -3,9 +3,11 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/percentile.h"
+#include "core/readable.h"
 #include "viewer/bench/html_plot.h"
-#include "viewer/bench/html_text.h"
 #include "viewer/bench/report.h"
+#include "viewer/output/html_text.h"
 
 namespace strata {
 namespace {
@@ -152,10 +154,10 @@ std::vector<double> cutsOf(const BenchReport& report) {
   return cuts;
 }
 
-/// Frame time against the share of frames that take no longer.
+/// Picture time against the share of frames that take no longer.
 Plot percentilePlot(const std::vector<FrameRecord>& frames) {
   const std::vector<double> times = column(frames, [](const FrameRecord& f) { return f.frameMs; });
-  Plot plot{"Frame time by percentile", "The share of frames that took no longer.", {}, {}, {}, readableMs, "%"};
+  Plot plot{"Picture time by percentile", "The share of frames that took no longer.", {}, {}, {}, readableMs, "%"};
   PlotLine line{"a frame", "a", {}, true};
   for (int p = 0; p <= 200; ++p) {
     plot.x.push_back(p / 2.0);
@@ -175,8 +177,12 @@ std::string plotsHtml(const BenchReport& report) {
     return PlotLine{label, style, column(frames, get), filled};
   };
 
-  Plot time{
-      "Frame time over the path", hitches.empty() ? "" : "Hitches are marked at the top.", t, {}, hitches, readableMs};
+  Plot time{"Picture time over the path",
+            hitches.empty() ? "" : "Hitches are marked at the top.",
+            t,
+            {},
+            hitches,
+            readableMs};
   time.lines.push_back(line("a frame", "a", true, [](const FrameRecord& f) { return f.frameMs; }));
   time.lines.push_back({"99th percentile", "muted", std::vector<double>(t.size(), report.measures.p99Ms), false});
   Plot points{"Points over the path", "Drawn: sent through projection after culling.", t, {}, {}, readableCount};

@@ -27,7 +27,7 @@ std::size_t recordOf(const Hierarchy& hierarchy, std::uint64_t key) {
 }
 
 /// Whether something nearer covers all of a few pixels spread over the contour's place in the picture.
-bool hiddenIn(const Frame& frame, const View& view, const Contour& contour, double reach) {
+bool hiddenIn(const Picture& frame, const View& view, const Contour& contour, double reach) {
   constexpr int kSamples = 5;       // a side
   constexpr double kNearer = 0.99;  // of the contour's depth; points of the same surface do not hide it
   const Projection p = projection(view);
@@ -62,7 +62,7 @@ bool hiddenIn(const Frame& frame, const View& view, const Contour& contour, doub
 }  // namespace
 
 double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, const RenderList& list, const View& view,
-                     const Frame& frame) {
+                     const Picture& frame) {
   const ViewVolume volume(view);
   std::vector<Drawn> drawn;
   for (const RenderItem& item : list.items)

@@ -1,8 +1,8 @@
 #pragma once
-#include "core/frame.h"
+#include "core/picture.h"
 #include "core/render_list.h"
 #include "core/view.h"
-#include "io/store.h"
+#include "io/store/store.h"
 #include "lod/hierarchy_index.h"
 
 namespace strata {
@@ -14,6 +14,6 @@ namespace strata {
 /// enough in the budget at most 1 / sqrt(pointsPerPixel), but for rounding to whole points; 0 where nothing is drawn or
 /// nothing more is to be had.
 double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, const RenderList& list, const View& view,
-                     const Frame& frame);
+                     const Picture& frame);
 
 }  // namespace strata

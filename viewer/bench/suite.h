@@ -1,8 +1,8 @@
 #pragma once
 #include <string>
 
-#include "render/rasterizer.h"
-#include "viewer/drawing.h"
+#include "render/create_rasterizer.h"
+#include "viewer/session/drawing.h"
 
 namespace strata {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "render/gl_functions.h"
-#include "viewer/bench/html_text.h"
+#include "core/readable.h"
+#include "render/gl/gl_functions.h"
 
 namespace strata::suite {
 namespace {
@@ -72,7 +72,7 @@ double drawingMs(const Rasterizer& rasterizer, const DrawStats& stats) {
 }
 
 Measure measure(Rasterizer& rasterizer, const RenderList& list, const View& view, const DrawOptions& draw, int frames) {
-  Frame frame;
+  Picture frame;
   Measure result;
   do {
     result.stats = rasterizer.draw(list, view, draw, frame);

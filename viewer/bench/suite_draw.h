@@ -3,7 +3,8 @@
 #include <span>
 #include <string>
 
-#include "render/compute_rasterizer.h"
+#include "render/create_rasterizer.h"
+#include "render/gpu/compute_rasterizer.h"
 #include "viewer/bench/suite.h"
 
 namespace strata::suite {

@@ -11,14 +11,15 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/percentile.h"
+#include "io/file/text_file.h"
 #include "lod/streamer.h"
 #include "viewer/bench/measures.h"
 #include "viewer/bench/page_cache.h"
-#include "viewer/bench/stills.h"
 #include "viewer/bench/suite_draw.h"
 #include "viewer/bench/suite_parts.h"
-#include "viewer/converter_program.h"
-#include "viewer/text_file.h"
+#include "viewer/camera/stills.h"
+#include "viewer/session/converter_program.h"
 
 namespace strata::suite {
 namespace {
@@ -63,7 +64,7 @@ Line flyViews(const std::string& path, const std::vector<View>& views, bool occl
   followDrawing(draw, options.selection);
   Streamer streamer(store, options);
   Line line;
-  Frame frame;
+  Picture frame;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto start = Clock::now();
     streamer.setView(views[i]);
@@ -97,7 +98,7 @@ std::vector<View> outdoorViews(const Store& store, const Setup& setup) {
   return views;
 }
 
-/// Of the office floor (io/synthetic_room.cpp): from above, from the entrance along the corridor, at the desk of a room
+/// Of the office floor (io/synthetic/room.cpp): from above, from the entrance along the corridor, at the desk of a room
 /// that is an office always.
 std::vector<View> indoorViews(const Store& store, const Setup& setup) {
   constexpr double kOuterWall = 0.3, kRoom = 4.8, kMiddle = 7.35, kNorth = 14.7;

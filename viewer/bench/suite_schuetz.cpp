@@ -205,7 +205,7 @@ void twoEyes(const Setup& setup) {
   const View views[] = {left, right};
   const auto time = [&](const DrawStats& stats) { return drawingMs(*rasterizer, stats); };
   std::vector<double> together, apart;
-  Frame frames[2];
+  Picture frames[2];
   rasterizer->drawViews(list, views, {}, frames);
   for (int i = 0; i < setup.frames; ++i) {
     together.push_back(time(rasterizer->drawViews(list, views, {}, frames)));

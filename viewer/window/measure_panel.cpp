@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "viewer/window/choose_panel.h"
-#include "viewer/window/item_places.h"
+#include "viewer/window/filter_panel.h"
+#include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "core/view.h"
-#include "viewer/class_census.h"
-#include "viewer/clip_boxes.h"
-#include "viewer/measure_tool.h"
-#include "viewer/pick.h"
-#include "viewer/project.h"
+#include "viewer/session/class_census.h"
+#include "viewer/session/project.h"
+#include "viewer/tools/clip_boxes.h"
+#include "viewer/tools/measure_tool.h"
+#include "viewer/tools/pick.h"
 
 namespace strata {
 

@@ -2,7 +2,7 @@
 
 #include <imgui.h>
 
-#include "viewer/camera_control.h"
+#include "viewer/camera/camera_control.h"
 
 namespace strata {
 namespace {

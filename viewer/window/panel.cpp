@@ -10,10 +10,11 @@
 #include <optional>
 #include <span>
 
-#include "viewer/bench/html_text.h"
-#include "viewer/drawing.h"
-#include "viewer/legend.h"
-#include "viewer/window/item_places.h"
+#include "core/readable.h"
+#include "render/create_rasterizer.h"
+#include "viewer/session/drawing.h"
+#include "viewer/session/legend.h"
+#include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {

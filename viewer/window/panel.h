@@ -4,11 +4,11 @@
 #include <functional>
 #include <string>
 
-#include "core/frame.h"
+#include "core/draw_options.h"
 #include "lod/streamer.h"
-#include "render/rasterizer.h"
-#include "viewer/camera_control.h"
-#include "viewer/monitor.h"
+#include "render/create_rasterizer.h"
+#include "viewer/camera/camera_control.h"
+#include "viewer/window/frame_history.h"
 
 namespace strata {
 

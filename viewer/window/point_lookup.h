@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/pick.h"
+#include "viewer/tools/pick.h"
 
 namespace strata {
 

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "viewer/bench/html_text.h"
-#include "viewer/class_census.h"
-#include "viewer/pick.h"
-#include "viewer/window/item_places.h"
+#include "core/readable.h"
+#include "viewer/session/class_census.h"
+#include "viewer/tools/pick.h"
+#include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {

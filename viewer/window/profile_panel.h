@@ -6,9 +6,10 @@
 
 #include <glm/glm.hpp>
 
-#include "core/frame.h"
-#include "viewer/measurement.h"
-#include "viewer/profile_picture.h"
+#include "core/draw_options.h"
+#include "core/picture.h"
+#include "viewer/tools/measurement.h"
+#include "viewer/tools/profile_picture.h"
 #include "viewer/window/profile_reader.h"
 #include "viewer/window/screen.h"
 
@@ -72,7 +73,7 @@ class ProfilePanel {
   double stretch_ = 1.0;
   std::optional<ProfileWindow> window_;  ///< none: all of it
   Look look_;
-  Frame picture_;
+  Picture picture_;
   Screen screen_;
 };
 

@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "viewer/profile.h"
+#include "viewer/tools/profile.h"
 
 namespace strata {
 

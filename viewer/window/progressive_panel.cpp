@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "viewer/bench/html_text.h"
+#include "core/readable.h"
 #include "viewer/window/overlay.h"
 
 namespace strata {

@@ -1,5 +1,5 @@
 #pragma once
-#include "render/progressive_rasterizer.h"
+#include "render/progressive/progressive_rasterizer.h"
 
 namespace strata {
 

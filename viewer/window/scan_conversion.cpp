@@ -16,9 +16,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "viewer/bench/html_text.h"
-#include "viewer/converter_program.h"
-#include "viewer/window/item_places.h"
+#include "core/readable.h"
+#include "viewer/session/converter_program.h"
+#include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/state_file.h"
 #include "viewer/window/window.h"

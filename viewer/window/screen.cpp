@@ -41,7 +41,7 @@ Screen::Screen(GlContext::GetProc getProc) {
 
 Screen::~Screen() { gl_.deleteTextures(1, &texture_); }
 
-void Screen::upload(const Frame& frame) {
+void Screen::upload(const Picture& frame) {
   gl_.bindTexture(kTexture2D, texture_);
   gl_.pixelStorei(kUnpackAlignment, 4);
   if (frame.width != width_ || frame.height != height_)

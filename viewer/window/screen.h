@@ -1,7 +1,7 @@
 #pragma once
-#include "core/frame.h"
 #include "core/image.h"
-#include "render/gl_context.h"
+#include "core/picture.h"
+#include "render/gl/gl_context.h"
 
 namespace strata {
 
@@ -15,7 +15,7 @@ class Screen {
   Screen& operator=(const Screen&) = delete;
 
   /// Copies the picture into the texture, row 0 first.
-  void upload(const Frame& frame);
+  void upload(const Picture& frame);
   unsigned texture() const { return texture_; }
   /// What stands in the back buffer.
   Image read(int width, int height) const;

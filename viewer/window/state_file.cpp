@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "viewer/text_file.h"
+#include "io/file/text_file.h"
 
 namespace strata {
 

@@ -14,16 +14,16 @@ struct ShownState {
   bool hidden = false;
   glm::ivec2 size{0};  ///< of the framebuffer
   glm::dvec3 eye{0.0};
-  std::string moving{};        ///< "orbit", "fly", "earth"
+  std::string moving{};      ///< "orbit", "fly", "earth"
   int measuring = -1;        ///< points of the measurement that is being made; -1: none
   std::size_t measured = 0;  ///< measurements that are kept
   std::size_t clipBoxes = 0;
   std::size_t hiddenClasses = 0;
   std::size_t pathKeys = 0;
   bool recording = false, playing = false;
-  bool working = false;  ///< on a picture or a film
+  bool working = false;     ///< on a picture or a film
   std::uint64_t drawn = 0;  ///< frames in which the scene was drawn
-  std::string picked{};    ///< coordinates of the last point
+  std::string picked{};     ///< coordinates of the last point
   std::string notice{}, error{};
 };
 

@@ -6,7 +6,8 @@
 #include "viewer/window/viewer_app.h"
 
 int main(int argc, char** argv) {
-  // Nodes come and go in several threads for hours: their blocks go back to the system instead of leaving holes in heaps.
+  // Nodes come and go in several threads for hours: their blocks go back to the system instead of leaving holes in
+  // heaps.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 18);
   ::mallopt(M_ARENA_MAX, 2);
   try {

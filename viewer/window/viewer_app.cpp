@@ -8,17 +8,18 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/log.h"
-#include "viewer/bench/stills.h"
-#include "viewer/camera_control.h"
-#include "viewer/layers.h"
-#include "viewer/opened_stores.h"
-#include "viewer/project.h"
-#include "viewer/scene.h"
-#include "viewer/text_file.h"
-#include "viewer/window/choose_panel.h"
-#include "viewer/window/inside_panel.h"
-#include "viewer/window/keeper.h"
+#include "io/file/text_file.h"
+#include "render/create_rasterizer.h"
+#include "viewer/camera/camera_control.h"
+#include "viewer/camera/scan_sample.h"
+#include "viewer/camera/stills.h"
+#include "viewer/session/layers.h"
+#include "viewer/session/opened_stores.h"
+#include "viewer/session/project.h"
+#include "viewer/window/filter_panel.h"
+#include "viewer/window/inspector_panel.h"
 #include "viewer/window/measure_panel.h"
+#include "viewer/window/output_jobs.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel.h"
 #include "viewer/window/profile_panel.h"
@@ -26,7 +27,7 @@
 #include "viewer/window/scan_conversion.h"
 #include "viewer/window/screen.h"
 #include "viewer/window/state_file.h"
-#include "viewer/window/tool_hand.h"
+#include "viewer/window/tool_input.h"
 #include "viewer/window/window.h"
 
 namespace strata {
@@ -420,7 +421,7 @@ class ViewerApp {
   bool helpOpen_ = false;
   std::uint64_t framesDrawn_ = 0;
   const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
-  Frame frame_;
+  Picture frame_;
 };
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "core/frame.h"
+#include "core/draw_options.h"
 #include "lod/streamer.h"
-#include "render/rasterizer.h"
-#include "viewer/draw_flags.h"
-#include "viewer/drawing.h"
-#include "viewer/progressive_flags.h"
+#include "render/create_rasterizer.h"
+#include "viewer/session/draw_flags.h"
+#include "viewer/session/drawing.h"
+#include "viewer/session/progressive_flags.h"
 
 namespace strata {
 

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
-#include "viewer/command_line.h"
+#include "render/create_rasterizer.h"
+#include "viewer/session/command_line.h"
 #include "viewer/window/viewer_app.h"
 
 namespace strata {

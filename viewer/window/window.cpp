@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "viewer/input_queue.h"
+#include "viewer/window/input_queue.h"
 
 namespace strata {
 namespace {

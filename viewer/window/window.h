@@ -5,9 +5,9 @@
 
 #include <glm/glm.hpp>
 
-#include "render/gl_context.h"
-#include "viewer/camera_control.h"
-#include "viewer/window/item_places.h"
+#include "render/gl/gl_context.h"
+#include "viewer/camera/camera_control.h"
+#include "viewer/window/item_positions.h"
 
 namespace strata {
 

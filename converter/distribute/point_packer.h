@@ -1,0 +1,59 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "converter/distribute/attribute_stats.h"
+#include "converter/distribute/packed_points.h"
+#include "converter/survey/survey.h"
+#include "io/scan/point_source.h"
+
+namespace strata {
+
+/// Turns the points of one source into packed points on the store's grid. Used by one thread.
+class PointPacker {
+ public:
+  PointPacker(const Survey& frame, const PackedFormat& format, const PointSource& source, const SourceMapping& mapping);
+
+  /// Reads the next at most `maxPoints` points and packs those that are finite; false at the end of the part.
+  bool read(PointReader& reader, std::size_t maxPoints);
+
+  const std::byte* points() const { return packed_.data(); }
+  std::size_t count() const { return count_; }      ///< packed
+  std::size_t skipped() const { return skipped_; }  ///< of those just read
+  bool outside() const { return outside_; }         ///< some of those just read lie outside the cube
+
+  /// Of the points just packed; meaningless where there are none.
+  const std::array<std::uint64_t, 3>& low() const { return low_; }
+  const std::array<std::uint64_t, 3>& high() const { return high_; }
+
+ private:
+  /// Grid integer = factor * source integer + shift.
+  struct IntegerAxis {
+    std::int64_t factor = 0, shift = 0;
+  };
+  bool findIntegerAxes(const PointSource& source);
+  template <typename Grid>
+  void packIntegers();
+  template <typename Grid>
+  void packDoubles();
+  template <typename Grid>
+  void addAttributes();
+
+  const Survey& frame_;
+  const PackedFormat format_;
+  const SourceMapping& mapping_;
+  const std::size_t sourceStride_;
+  bool integers_ = false;  ///< the source's integers are multiples of the store's
+  std::array<IntegerAxis, 3> axes_{};
+  PointBlock block_;
+  std::vector<std::uint32_t> kept_;  ///< indices into the block, where some were skipped
+  std::vector<std::byte> packed_;
+  std::size_t count_ = 0, skipped_ = 0;
+  bool outside_ = false;
+  std::array<std::uint64_t, 3> low_{}, high_{};
+};
+
+}  // namespace strata

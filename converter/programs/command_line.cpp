@@ -1,0 +1,22 @@
+#include "converter/programs/command_line.h"
+
+#include <CLI/CLI.hpp>
+
+#include "core/error.h"
+
+namespace strata {
+
+bool parseCommandLine(CLI::App& app, int argc, char** argv) {
+  app.set_version_flag("--version", STRATA_VERSION);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    app.exit(asked);
+    return false;
+  } catch (const CLI::ParseError& problem) {
+    throw UsageError(problem.what());
+  }
+  return true;
+}
+
+}  // namespace strata

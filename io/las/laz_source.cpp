@@ -1,0 +1,221 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/error.h"
+#include "core/log.h"
+#include "io/las/las_record.h"
+#include "io/las/las_source.h"
+#include "io/las/laz_codec.h"
+#include "io/las/laz_header.h"
+
+namespace strata {
+namespace {
+
+constexpr std::uint64_t kPartPoints = std::uint64_t{1} << 19;
+constexpr std::size_t kBatchPoints = 4096;       // unpacked at once
+constexpr std::uint64_t kPointsPerByte = 10000;  // more than any cloud compresses to
+
+struct LazPart {
+  std::vector<LazRun> runs;
+  std::uint64_t firstPoint = 0;  ///< in the file, for messages
+};
+
+/// Compressed records, decoded by LASzip: a reader has a decoder of its own, so parts run side by side.
+class LazSource final : public PointSource {
+ public:
+  LazSource(std::unique_ptr<ByteSource> file, const LasHeader& header, LazFormat format, SourceInfo info,
+            std::vector<LazPart> parts, bool skipDamaged)
+      : file_(std::move(file)),
+        header_(header),
+        format_(std::move(format)),
+        info_(std::move(info)),
+        parts_(std::move(parts)),
+        skipDamaged_(skipDamaged) {}
+
+  const SourceInfo& info() const override { return info_; }
+  std::size_t partCount() const override { return parts_.size(); }
+  std::unique_ptr<PointReader> openPart(std::size_t part) const override;
+
+  std::unique_ptr<LazDecoder> openRun(const LazRun& run) const {
+    return std::make_unique<LazDecoder>(*file_, header_, format_, run);
+  }
+  const LasHeader& header() const { return header_; }
+  bool skipDamaged() const { return skipDamaged_; }
+
+ private:
+  std::unique_ptr<ByteSource> file_;
+  LasHeader header_;
+  LazFormat format_;
+  SourceInfo info_;
+  std::vector<LazPart> parts_;
+  bool skipDamaged_;
+};
+
+class LazReader final : public PointReader {
+ public:
+  LazReader(const LazSource& source, const LazPart& part)
+      : source_(source),
+        part_(part),
+        record_{source.header().pointFormat, source.header().recordBytes},
+        nextPoint_(part.firstPoint),
+        batch_(kBatchPoints * record_.recordBytes) {}
+
+  bool read(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.positions, [&](std::span<glm::dvec3> positions, std::byte* attributes) {
+      unpackLasRecords(record_, source_.header().scale, batch_.data(), positions, attributes);
+    });
+  }
+  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
+    return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
+      unpackLasRecords(record_, batch_.data(), integers, attributes);
+    });
+  }
+
+ private:
+  template <typename Position, typename Unpack>
+  bool readInto(PointBlock& block, std::size_t maxPoints, std::vector<Position>& positions, Unpack unpack) {
+    if (failure_ && !source_.skipDamaged()) throw *failure_;
+    const std::size_t stride = lasStride(record_);
+    positions.resize(maxPoints);
+    block.attributes.resize(maxPoints * stride);
+    std::size_t done = 0;
+    while (done < maxPoints && !failure_) {
+      const std::size_t points = decode(std::min(kBatchPoints, maxPoints - done));
+      if (points == 0) break;
+      unpack(std::span(positions).subspan(done, points), block.attributes.data() + done * stride);
+      done += points;
+    }
+    positions.resize(done);
+    block.attributes.resize(done * stride);
+    if (done == 0 && failure_ && !source_.skipDamaged()) throw *failure_;
+    return done != 0;
+  }
+
+  /// Fills the batch with up to `wanted` records and returns how many; fewer at the end of a run or at damage.
+  std::size_t decode(std::size_t wanted) {
+    try {
+      if (!decoder_ || decoder_->left() == 0) {
+        if (run_ == part_.runs.size()) return 0;
+        decoder_ = source_.openRun(part_.runs[run_]);
+        runStart_ = nextPoint_;
+        ++run_;
+      }
+      wanted = static_cast<std::size_t>(std::min<std::uint64_t>(wanted, decoder_->left()));
+      std::size_t done = 0;
+      while (done < wanted) {
+        failure_ = decoder_->next(runStart_, batch_.data() + done * record_.recordBytes);
+        if (failure_) break;
+        ++done;
+      }
+      nextPoint_ += done;
+      return done;
+    } catch (const Error& error) {
+      failure_ = error;
+      return 0;
+    }
+  }
+
+  const LazSource& source_;
+  const LazPart& part_;
+  LasRecordFormat record_;
+  std::size_t run_ = 0;  ///< index of the next run
+  std::uint64_t runStart_ = 0;
+  std::uint64_t nextPoint_;
+  std::unique_ptr<LazDecoder> decoder_;
+  std::vector<std::byte> batch_;
+  std::optional<Error> failure_;  ///< thrown once the points before it are handed out
+};
+
+std::unique_ptr<PointReader> LazSource::openPart(std::size_t part) const {
+  return std::make_unique<LazReader>(*this, parts_[part]);
+}
+
+/// Cuts the chunks that hold the first `points` points into parts of about kPartPoints.
+std::vector<LazPart> partsOf(const std::vector<LazChunk>& chunks, bool equalChunks, std::uint64_t points) {
+  std::vector<LazPart> parts;
+  std::uint64_t inPart = kPartPoints, before = 0;
+  for (const LazChunk& chunk : chunks) {
+    const std::uint64_t taken = std::min(chunk.points, points - before);
+    if (taken == 0) continue;
+    if (inPart >= kPartPoints) {
+      parts.push_back({{}, before});
+      inPart = 0;
+    }
+    std::vector<LazRun>& runs = parts.back().runs;
+    if (runs.empty() || !equalChunks) runs.push_back({{}, chunk.offset, chunk.offset, chunk.points, 0});
+    LazRun& run = runs.back();
+    run.end = chunk.offset + chunk.bytes;
+    run.chunkEnds.push_back(run.end);
+    run.points += taken;
+    inPart += taken;
+    before += taken;
+  }
+  return parts;
+}
+
+/// All points as one part, where no chunk table says more.
+std::vector<LazPart> onePart(const ByteSource& file, std::uint64_t begin, std::uint64_t chunkPoints,
+                             std::uint64_t points) {
+  const std::uint64_t bytes = file.size() - begin;
+  if (points / kPointsPerByte > bytes)
+    throw Error(file.name(), "more points than the file can hold, found " + std::to_string(bytes) +
+                                 " bytes of points (expected " + std::to_string(points) + " points)");
+  return {LazPart{{LazRun{{}, begin, file.size(), chunkPoints, points}}, 0}};
+}
+
+/// The chunk table; nothing where there is none, or none that is sound and the user takes what there is.
+std::vector<LazChunk> findChunks(const ByteSource& file, const LasHeader& header, const LazFormat& format,
+                                 bool skipDamaged) {
+  try {
+    const std::uint64_t table = chunkTableOffset(file, header);
+    if (table != 0) return readChunkTable(file, header, format, table);
+  } catch (const Error&) {
+    if (!skipDamaged) throw;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<PointSource> openLaz(std::unique_ptr<ByteSource> file, const LasHead& head, SourceInfo info,
+                                     const SourceOptions& options) {
+  const LasHeader& header = head.header;
+  LazFormat format = parseLazFormat(info.path, head);
+  std::vector<LazPart> parts;
+  std::uint64_t points = info.pointCount;
+  if (points != 0 && format.compressor == LazFormat::kPointwise) {
+    parts = onePart(*file, header.pointsOffset, 0, points);
+  } else if (points != 0) {
+    const bool equalChunks = format.chunkSize != LazFormat::kVariableChunks;
+    const std::vector<LazChunk> chunks = findChunks(*file, header, format, options.skipDamaged);
+    std::uint64_t held = 0;
+    for (const LazChunk& chunk : chunks) held += chunk.points;
+    if (!chunks.empty()) {
+      if (points > held && header.legacyPointCount != 0 && header.legacyPointCount <= held)
+        points = info.pointCount = header.legacyPointCount;
+      if (points > held && !options.skipDamaged)
+        throw Error(info.path, "the file ends early, found chunks of " + std::to_string(held) + " points (expected " +
+                                   std::to_string(points) + ")");
+      points = std::min(points, held);
+      std::uint64_t before = 0, more = 0;  // points of whole chunks behind the counted ones
+      for (const LazChunk& chunk : chunks) {
+        if (before >= points) more += chunk.points;
+        before += chunk.points;
+      }
+      if (more > 0)
+        logWarning(info.path + ": the header counts " + std::to_string(points) + " points, found room for " +
+                   std::to_string(more) + " more behind them, which are not read");
+      parts = partsOf(chunks, equalChunks, points);
+    } else if (equalChunks && file->size() - header.pointsOffset > 8) {
+      parts = onePart(*file, std::uint64_t{header.pointsOffset} + 8, format.chunkSize, points);
+    } else if (!options.skipDamaged) {
+      throw Error(info.path, "chunks of varying size need a chunk table, found none (expected one)");
+    }
+  }
+  info.uncompressedBytes = points * header.recordBytes;
+  return std::make_unique<LazSource>(std::move(file), header, std::move(format), std::move(info), std::move(parts),
+                                     options.skipDamaged);
+}
+
+}  // namespace strata

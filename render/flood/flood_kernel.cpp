@@ -1,0 +1,419 @@
+#include "render/flood/flood_kernel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/flood/flood_kernel.cpp"  // compiled once for each instruction set
+#include <hwy/foreach_target.h>
+// After foreach_target.h: these two are for one target at a time.
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace strata {
+namespace HWY_NAMESPACE {
+namespace {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Float = hn::CappedTag<float, kFloodTile>;
+using Word = hn::RebindToUnsigned<Float>;
+using Integer = hn::RebindToSigned<Float>;
+using Floats = hn::Vec<Float>;
+using Words = hn::Vec<Word>;
+using Mask = hn::Mask<Float>;
+
+constexpr Float kFloat{};
+constexpr Word kWord{};
+constexpr Integer kInteger{};
+
+HWY_INLINE Floats toFloat(Words value) { return hn::ConvertTo(kFloat, hn::BitCast(kInteger, value)); }
+HWY_INLINE Mask toMask(hn::Mask<Word> mask) { return hn::RebindMask(kFloat, mask); }
+HWY_INLINE hn::Mask<Word> toWord(Mask mask) { return hn::RebindMask(kWord, mask); }
+HWY_INLINE Words column(Words pixel) { return hn::And(pixel, hn::Set(kWord, 0xffffu)); }
+HWY_INLINE Words row(Words pixel) { return hn::ShiftRight<16>(pixel); }
+
+/// Some seeds with what is asked of them; lanes that hold none have anything.
+struct Seeds {
+  Floats x, y, z, reach, normalX, normalY, normalZ;
+};
+
+/// Finds seeds of one picture.
+class SeedTable {
+ public:
+  explicit SeedTable(const FloodSeeds& seeds)
+      : width_(static_cast<std::uint32_t>(seeds.width)),
+        lens_(seeds.lens),
+        place_(&seeds.place.data()->depth),
+        normal_(seeds.normal.empty() ? nullptr : reinterpret_cast<const std::int32_t*>(seeds.normal.data())) {}
+
+  bool hasNormals() const { return normal_ != nullptr; }
+
+  Floats metres(Floats depth) const {
+    const auto perPixel = hn::Set(kFloat, lens_.perPixel);
+    return lens_.perspective ? perPixel * depth : perPixel;
+  }
+
+  HWY_INLINE Seeds gather(Words seed, Mask some) const {
+    Seeds out;
+    const auto safe = hn::IfThenElseZero(toWord(some), seed);
+    const auto index =
+        hn::BitCast(kInteger, hn::ShiftRight<17>(safe) * hn::Set(kWord, width_) + hn::ShiftRight<1>(column(safe)));
+    out.z = hn::GatherIndex(kFloat, place_, index + index);
+    out.reach = hn::GatherIndex(kFloat, place_ + 1, index + index);
+    const auto size = metres(out.z);
+    out.x = (toFloat(column(safe)) - hn::Set(kFloat, lens_.middleX - 0.5f)) * size;
+    out.y = (hn::Set(kFloat, lens_.middleY - 0.5f) - toFloat(row(safe))) * size;
+    out.normalX = out.normalY = out.normalZ = hn::Zero(kFloat);
+    if (normal_ == nullptr) return out;
+    const auto packed = hn::BitCast(kWord, hn::GatherIndex(kInteger, normal_, index));
+    const auto known = toMask(hn::Ne(packed, hn::Zero(kWord)));
+    const auto part = [known](Words bits) {
+      const auto value = toFloat(hn::And(bits, hn::Set(kWord, 1023u))) - hn::Set(kFloat, 512.0f);
+      return hn::IfThenElseZero(known, value * hn::Set(kFloat, 1.0f / 511.0f));
+    };
+    out.normalX = part(packed);
+    out.normalY = part(hn::ShiftRight<10>(packed));
+    out.normalZ = part(hn::ShiftRight<20>(packed));
+    return out;
+  }
+
+ private:
+  const std::uint32_t width_;
+  const FloodLens& lens_;
+  const float* place_;
+  const std::int32_t* normal_;
+};
+
+HWY_INLINE Floats dot(Floats ax, Floats ay, Floats az, Floats bx, Floats by, Floats bz) {
+  return ax * bx + ay * by + az * bz;
+}
+
+HWY_INLINE Floats distance2(const Seeds& a, const Seeds& b) {
+  const auto x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  return dot(x, y, z, x, y, z);
+}
+
+/// sameLayer() of seeds that lie this far from each other.
+HWY_INLINE Mask same(const Seeds& a, const Seeds& b, Floats distance2, bool normals, const FloodSettings& settings) {
+  const auto reach = hn::Min(a.reach, b.reach);
+  const auto near = hn::Le(distance2, reach * reach);
+  if (!normals || hn::AllFalse(kFloat, near)) return near;
+  const auto isNone = [](const Seeds& s) {
+    return hn::Eq(dot(s.normalX, s.normalY, s.normalZ, s.normalX, s.normalY, s.normalZ), hn::Zero(kFloat));
+  };
+  const auto x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const auto off = [&](const Seeds& s) { return hn::Abs(dot(x, y, z, s.normalX, s.normalY, s.normalZ)); };
+  const auto cosine = hn::Abs(dot(a.normalX, a.normalY, a.normalZ, b.normalX, b.normalY, b.normalZ));
+  const auto alike = hn::And(hn::Ge(cosine, hn::Set(kFloat, settings.angle)),
+                             hn::Lt(hn::Max(off(a), off(b)), hn::Set(kFloat, settings.continuity) * reach));
+  return hn::And(near, hn::Or(hn::Or(isNone(a), isNone(b)), alike));
+}
+
+/// What a vector of pixels holds in one of its layers.
+struct Held {
+  HWY_ALIGN FloodPixel seed[kFloodTile];
+  HWY_ALIGN float distance2[kFloodTile];  ///< squared pixels of the half picture
+  HWY_ALIGN float parts[7][kFloodTile];   ///< of Seeds, in its order
+};
+
+/// The layers of a vector of pixels while candidates come in.
+class LayerSearch {
+ public:
+  LayerSearch(const LayerRound& round, const SeedTable& table, int x, int y)
+      : round_(round),
+        table_(table),
+        inside_(hn::FirstN(kFloat, static_cast<std::size_t>(std::max(round.seeds.width - x, 0)))),
+        x_(hn::Iota(kFloat, static_cast<float>(x))),
+        y_(hn::Set(kFloat, static_cast<float>(y))),
+        here_(round.from.index(x, y)) {
+    for (int k = 0; k < kFloodLayers; ++k)
+      hn::Store(hn::LoadU(kWord, &round.from.planes[k][here_]), kWord, held_[k].seed);
+  }
+
+  /// The candidates that the pixels at `from` hold.
+  HWY_INLINE void look(std::size_t from) {
+    for (const auto& plane : round_.from.planes) {
+      const auto seed = hn::LoadU(kWord, &plane[from]);
+      const auto some = hn::And(inside_, toMask(hn::Ne(seed, hn::Set(kWord, kNoPixel))));
+      if (hn::AllFalse(kFloat, some)) return;
+      auto known = hn::Eq(seed, heldSeed(0));
+      for (int k = 1; k < kFloodLayers; ++k) known = hn::Or(known, hn::Eq(seed, heldSeed(k)));
+      const auto fresh = hn::AndNot(toMask(known), some);
+      if (!hn::AllFalse(kFloat, fresh)) consider(seed, fresh);
+    }
+  }
+
+  void store() const {
+    for (int k = 0; k < kFloodLayers; ++k) hn::StoreU(heldSeed(k), kWord, &round_.to.planes[k][here_]);
+  }
+
+ private:
+  HWY_INLINE Words heldSeed(int k) const { return hn::Load(kWord, held_[k].seed); }
+
+  HWY_INLINE Floats pixels2(Words seed) const {
+    const auto dx = toFloat(hn::ShiftRight<1>(column(seed))) - x_, dy = toFloat(hn::ShiftRight<17>(seed)) - y_;
+    return dx * dx + dy * dy;
+  }
+
+  HWY_INLINE void put(int k, Mask where, Words seed, Floats distance2, const Seeds& seeds) {
+    Held& held = held_[k];
+    hn::BlendedStore(seed, toWord(where), kWord, held.seed);
+    hn::BlendedStore(distance2, where, kFloat, held.distance2);
+    const auto set = [&](int i, Floats value) { hn::BlendedStore(value, where, kFloat, held.parts[i]); };
+    set(0, seeds.x);
+    set(1, seeds.y);
+    set(2, seeds.z);
+    set(3, seeds.reach);
+    if (!table_.hasNormals()) return;
+    set(4, seeds.normalX);
+    set(5, seeds.normalY);
+    set(6, seeds.normalZ);
+  }
+
+  HWY_INLINE Seeds get(int k) const {
+    const auto part = [&](int i) { return hn::Load(kFloat, held_[k].parts[i]); };
+    Seeds out{part(0), part(1), part(2), part(3), hn::Zero(kFloat), hn::Zero(kFloat), hn::Zero(kFloat)};
+    if (!table_.hasNormals()) return out;
+    out.normalX = part(4);
+    out.normalY = part(5);
+    out.normalZ = part(6);
+    return out;
+  }
+
+  /// Looks up what the pixels held before this round: not needed where nothing new comes.
+  HWY_NOINLINE void lookUpHeld() {
+    lookedUp_ = true;
+    for (int k = 0; k < kFloodLayers; ++k) {
+      const auto some = toMask(hn::Ne(heldSeed(k), hn::Set(kWord, kNoPixel)));
+      const auto all = hn::FirstN(kFloat, hn::Lanes(kFloat));
+      put(k, all, heldSeed(k), pixels2(heldSeed(k)), table_.gather(heldSeed(k), some));
+    }
+  }
+
+  /// Whether candidates are closer to their pixels than others.
+  HWY_INLINE static Mask closer(Words seed, Floats distance2, Words otherSeed, Floats otherDistance2) {
+    return hn::Or(hn::Lt(distance2, otherDistance2),
+                  hn::And(hn::Eq(distance2, otherDistance2), toMask(hn::Lt(seed, otherSeed))));
+  }
+
+  HWY_NOINLINE void consider(Words seed, Mask fresh) {
+    if (!lookedUp_) lookUpHeld();
+    const Seeds seeds = table_.gather(seed, fresh);
+    const auto pixels = pixels2(seed);
+    const auto reachPx = hn::Set(kFloat, 0.5f) * seeds.reach / table_.metres(seeds.z) + hn::Set(kFloat, 1.0f);
+    auto open = hn::And(fresh, hn::Le(pixels, reachPx * reachPx));
+    if (hn::AllFalse(kFloat, open)) return;
+    auto farthest = hn::Load(kFloat, held_[0].distance2);
+    auto farthestSeed = heldSeed(0);
+    auto farthestLayer = hn::Zero(kWord);
+    for (int k = 0; k < kFloodLayers; ++k) {
+      const auto otherSeed = heldSeed(k);
+      const auto other = hn::Load(kFloat, held_[k].distance2);
+      const auto empty = hn::And(open, toMask(hn::Eq(otherSeed, hn::Set(kWord, kNoPixel))));
+      const Seeds held = get(k);
+      const auto alike = hn::AndNot(
+          empty, hn::And(open, same(seeds, held, distance2(seeds, held), table_.hasNormals(), round_.settings)));
+      const auto here = hn::Or(empty, hn::And(alike, closer(seed, pixels, otherSeed, other)));
+      if (!hn::AllFalse(kFloat, here)) put(k, here, seed, pixels, seeds);
+      open = hn::AndNot(hn::Or(empty, alike), open);
+      if (hn::AllFalse(kFloat, open)) return;
+      const auto farther =
+          hn::Or(hn::Gt(other, farthest), hn::And(hn::Eq(other, farthest), toMask(hn::Gt(otherSeed, farthestSeed))));
+      farthest = hn::IfThenElse(farther, other, farthest);
+      farthestSeed = hn::IfThenElse(toWord(farther), otherSeed, farthestSeed);
+      farthestLayer = hn::IfThenElse(toWord(farther), hn::Set(kWord, static_cast<std::uint32_t>(k)), farthestLayer);
+    }
+    const auto replace = hn::And(open, closer(seed, pixels, farthestSeed, farthest));
+    if (hn::AllFalse(kFloat, replace)) return;
+    for (int k = 0; k < kFloodLayers; ++k)
+      put(k, hn::And(replace, toMask(hn::Eq(farthestLayer, hn::Set(kWord, static_cast<std::uint32_t>(k))))), seed,
+          pixels, seeds);
+  }
+
+  const LayerRound& round_;
+  const SeedTable& table_;
+  const Mask inside_;
+  const Floats x_, y_;
+  const std::size_t here_;
+  bool lookedUp_ = false;
+  Held held_[kFloodLayers];
+};
+
+void searchLayersHere(const LayerRound& round, int x, int y) {
+  const SeedTable table(round.seeds);
+  for (int end = x + kFloodTile; x < std::min(end, round.seeds.width); x += static_cast<int>(hn::Lanes(kFloat))) {
+    LayerSearch search(round, table, x, y);
+    for (int v = y - round.step; v <= y + round.step; v += round.step)
+      if (v >= 0 && v < round.seeds.height)
+        for (int u = x - round.step; u <= x + round.step; u += round.step)
+          if (u != x || v != y) search.look(round.from.index(x, v) + static_cast<std::size_t>(u - x));
+    search.store();
+  }
+}
+
+/// floodSector() of pixels that lie (dx, dy) away.
+HWY_INLINE Words sector(Floats dx, Floats dy) {
+  const auto bit = [](Mask mask, std::uint32_t value) {
+    return hn::IfThenElseZero(toWord(mask), hn::Set(kWord, value));
+  };
+  const auto none = hn::Zero(kFloat);
+  return hn::Or(bit(hn::Lt(dy, none), 4), hn::Or(bit(hn::Lt(dx, none), 2), bit(hn::Lt(hn::Abs(dx), hn::Abs(dy)), 1)));
+}
+
+/// The entries of a table of kFloodNeighbours, which has kFloodTile: the first ones repeat.
+template <typename Tag, typename T>
+HWY_INLINE hn::Vec<Tag> lookUp(Tag tag, const T* table, Words index) {
+  if (hn::Lanes(tag) < kFloodNeighbours) return hn::GatherIndex(tag, table, hn::BitCast(kInteger, index));
+  return hn::TableLookupLanes(hn::Load(tag, table), hn::IndicesFromVec(tag, index));
+}
+
+void distancesToHere(const FloodSeeds& seeds, FloodPixel seed, const FloodNeighbours& others, float* out) {
+  const SeedTable table(seeds);
+  const auto all = hn::FirstN(kFloat, hn::Lanes(kFloat));
+  const Seeds one = table.gather(hn::Set(kWord, seed), all);
+  HWY_ALIGN FloodPixel padded[kFloodTile];
+  HWY_ALIGN float distances[kFloodTile];
+  std::copy(others.begin(), others.end(), padded);
+  std::fill(padded + others.size(), padded + kFloodTile, kNoPixel);
+  for (std::size_t i = 0; i < others.size(); i += hn::Lanes(kFloat)) {
+    const auto other = hn::Load(kWord, padded + i);
+    const auto some = toMask(hn::Ne(other, hn::Set(kWord, kNoPixel)));
+    const auto far = hn::Set(kFloat, std::numeric_limits<float>::infinity());
+    hn::Store(hn::IfThenElse(some, distance2(one, table.gather(other, some)), far), kFloat, distances + i);
+  }
+  std::copy_n(distances, others.size(), out);
+}
+
+std::size_t keepCloseHere(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
+                          const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distances) {
+  HWY_ALIGN FloodPixel held[kFloodTile];
+  HWY_ALIGN float farthest2[kFloodTile];
+  for (std::size_t i = 0; i < kFloodTile; ++i) {
+    held[i] = bounds.held[i % kFloodNeighbours];
+    farthest2[i] = bounds.farthest2[i % kFloodNeighbours];
+  }
+  const SeedTable table(seeds);
+  const Seeds one = table.gather(hn::Set(kWord, bounds.seed), hn::FirstN(kFloat, hn::Lanes(kFloat)));
+  const auto x = hn::Set(kFloat, static_cast<float>(pixelColumn(bounds.seed)));
+  const auto y = hn::Set(kFloat, static_cast<float>(pixelRow(bounds.seed)));
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(kFloat)) {
+    const auto seed = hn::LoadU(kWord, candidates + i);
+    const auto dx = toFloat(column(seed)) - x, dy = toFloat(row(seed)) - y;
+    const auto which = sector(dx, dy);
+    const auto most = lookUp(kFloat, farthest2, which);
+    const auto fresh =
+        hn::And(hn::And(hn::FirstN(kWord, count - i), hn::Ne(seed, hn::Set(kWord, kNoPixel))),
+                hn::And(hn::Ne(seed, hn::Set(kWord, bounds.seed)), hn::Ne(seed, lookUp(kWord, held, which))));
+    auto close = hn::And(toMask(fresh), hn::Le(hn::Set(kFloat, bounds.leastPerPixel2) * (dx * dx + dy * dy), most));
+    if (hn::AllFalse(kFloat, close)) continue;
+    const Seeds others = table.gather(seed, close);
+    const auto distance = distance2(one, others);
+    close = hn::And(hn::And(close, hn::Le(distance, most)), same(one, others, distance, table.hasNormals(), settings));
+    // Whole vectors: compressing straight into memory takes some processors a hundred cycles.
+    hn::StoreU(hn::Compress(distance, close), kFloat, distances + out);
+    hn::StoreU(hn::Compress(seed, toWord(close)), kWord, kept + out);
+    out += hn::CountTrue(kFloat, close);
+  }
+  return out;
+}
+
+/// Calls visit(offset in the strip, depth, d^2, pixels of the vector that the splat covers).
+template <typename Visit>
+HWY_INLINE void forEachFragment(const FloodSplat& splat, const FloodStrip& strip, Visit visit) {
+  const auto one = hn::Set(kFloat, 1.0f), none = hn::Zero(kFloat);
+  const auto set = [](float value) { return hn::Set(kFloat, value); };
+  const auto acrossX = set(splat.acrossX), alongX = set(splat.alongX);
+  const auto lanes = static_cast<int>(hn::Lanes(kFloat));
+  for (int y = std::max(int{splat.top}, strip.top); y <= std::min(int{splat.bottom}, strip.bottom - 1); ++y) {
+    const float dy = static_cast<float>(y) + 0.5f - splat.y;
+    const auto acrossY = set(splat.acrossY * dy), alongY = set(splat.alongY * dy);
+    const std::size_t start = static_cast<std::size_t>(y - strip.top) * strip.stride;
+    for (int x = splat.left; x <= splat.right; x += lanes) {
+      const auto dx = hn::Iota(kFloat, static_cast<float>(x) + 0.5f - splat.x);
+      const auto n = one + set(splat.tiltX) * dx + set(splat.tiltY * dy);
+      const auto inverse = one / n;
+      const auto a = (acrossX * dx + acrossY) * inverse, b = (alongX * dx + alongY) * inverse;
+      auto distance2 = a * a + b * b;
+      auto covered = hn::And(hn::FirstN(kFloat, static_cast<std::size_t>(splat.right - x + 1)),
+                             hn::And(hn::Le(distance2, one), hn::Gt(n, none)));
+      if (splat.openSectors != 0) {
+        const auto open = hn::And(hn::Shr(hn::Set(kWord, splat.openSectors), sector(dx, set(dy))), hn::Set(kWord, 1u));
+        const auto shorter = toMask(hn::Ne(open, hn::Zero(kWord)));
+        distance2 = hn::IfThenElse(shorter, distance2 * set(kFloodOpenSide * kFloodOpenSide), distance2);
+        covered = hn::And(covered, hn::Le(distance2, one));
+      }
+      if (hn::AllFalse(kFloat, covered)) continue;
+      const auto depth = (set(splat.centreDepth + splat.slopeY * dy) + set(splat.slopeX) * dx) * inverse;
+      visit(start + static_cast<std::size_t>(x), depth, distance2, covered);
+    }
+  }
+}
+
+void drawSplatDepthHere(const FloodSplat& splat, const FloodStrip& strip) {
+  forEachFragment(splat, strip, [&](std::size_t i, Floats depth, Floats, Mask covered) {
+    const auto limit = depth + hn::Max(depth * hn::Set(kFloat, kFloodDepthShare), hn::Set(kFloat, splat.radius));
+    const auto old = hn::LoadU(kFloat, strip.limit + i);
+    hn::StoreU(hn::IfThenElse(covered, hn::Min(limit, old), old), kFloat, strip.limit + i);
+  });
+}
+
+void blendSplatHere(const FloodSplat& splat, std::uint32_t colour, const FloodStrip& strip) {
+  const auto part = [colour](int shift) { return hn::Set(kFloat, static_cast<float>(colour >> shift & 255u)); };
+  const auto red = part(0), green = part(8), blue = part(16);
+  forEachFragment(splat, strip, [&](std::size_t i, Floats depth, Floats distance2, Mask covered) {
+    const auto counts = hn::And(covered, hn::Le(depth, hn::LoadU(kFloat, strip.limit + i)));
+    if (hn::AllFalse(kFloat, counts)) return;
+    const auto weight = hn::IfThenElseZero(counts, hn::Exp(kFloat, hn::Neg(distance2)));
+    const auto add = [i](Floats value, float* to) { hn::StoreU(hn::LoadU(kFloat, to + i) + value, kFloat, to + i); };
+    add(weight * red, strip.red);
+    add(weight * green, strip.green);
+    add(weight * blue, strip.blue);
+    add(hn::IfThenElseZero(counts, weight * depth), strip.depth);
+    add(weight, strip.weight);
+    const auto old = hn::LoadU(kFloat, strip.heaviest + i);
+    const auto heavier = hn::Gt(weight, old);
+    if (hn::AllFalse(kFloat, heavier)) return;
+    hn::StoreU(hn::IfThenElse(heavier, weight, old), kFloat, strip.heaviest + i);
+    hn::StoreU(hn::IfThenElse(toWord(heavier), hn::Set(kWord, splat.from), hn::LoadU(kWord, strip.from + i)), kWord,
+               strip.from + i);
+  });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace strata
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace strata {
+
+HWY_EXPORT(searchLayersHere);
+HWY_EXPORT(distancesToHere);
+HWY_EXPORT(keepCloseHere);
+HWY_EXPORT(drawSplatDepthHere);
+HWY_EXPORT(blendSplatHere);
+
+void searchLayers(const LayerRound& round, int x, int y) { HWY_DYNAMIC_DISPATCH(searchLayersHere)(round, x, y); }
+
+void distancesTo(const FloodSeeds& seeds, FloodPixel seed, const FloodNeighbours& others, float* out) {
+  HWY_DYNAMIC_DISPATCH(distancesToHere)(seeds, seed, others, out);
+}
+
+std::size_t keepClose(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
+                      const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distance2) {
+  return HWY_DYNAMIC_DISPATCH(keepCloseHere)(seeds, settings, bounds, candidates, count, kept, distance2);
+}
+
+void drawSplatDepth(const FloodSplat& splat, const FloodStrip& strip) {
+  HWY_DYNAMIC_DISPATCH(drawSplatDepthHere)(splat, strip);
+}
+
+void blendSplat(const FloodSplat& splat, std::uint32_t colour, const FloodStrip& strip) {
+  HWY_DYNAMIC_DISPATCH(blendSplatHere)(splat, colour, strip);
+}
+
+}  // namespace strata
+#endif

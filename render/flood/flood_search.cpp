@@ -1,0 +1,248 @@
+#include "render/flood/flood_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "render/flood/flood_kernel.h"
+
+namespace strata {
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 8;
+constexpr std::size_t kClosest = 4;  ///< Farias 2014, 4.3
+constexpr float kInfinite = std::numeric_limits<float>::infinity();
+
+float distance2(const glm::vec3& a, const glm::vec3& b) { return glm::dot(b - a, b - a); }
+
+/// Of each square of kFloodTile x kFloodTile pixels the largest reach, in pixels, of the seeds that reach into it; no
+/// more than `farthest`, which is as far as all jumps together go.
+class NearbyReaches {
+ public:
+  NearbyReaches(const FloodSeeds& seeds, float farthest)
+      : columns_((seeds.width + kFloodTile - 1) / kFloodTile), rows_((seeds.height + kFloodTile - 1) / kFloodTile) {
+    std::vector<float> own(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0f);
+    std::size_t i = 0;
+    for (int y = 0; y < seeds.height; ++y)
+      for (int x = 0; x < seeds.width; ++x, ++i)
+        if (seeds.at[i] != kNoPixel) {
+          float& largest = own[index(x / kFloodTile, y / kFloodTile)];
+          largest = std::max(largest, std::min(seeds.reachPx(i), farthest));
+        }
+    reach_ = own;
+    for (int row = 0; row < rows_; ++row)
+      for (int column = 0; column < columns_; ++column) spread(own[index(column, row)], column, row);
+  }
+
+  float at(int x, int y) const { return reach_[index(x / kFloodTile, y / kFloodTile)]; }
+
+ private:
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  }
+  void spread(float reach, int column, int row) {
+    if (!(reach > 0.0f)) return;
+    const int tiles = static_cast<int>(reach) / kFloodTile + 1;
+    for (int v = std::max(row - tiles, 0); v <= std::min(row + tiles, rows_ - 1); ++v)
+      for (int u = std::max(column - tiles, 0); u <= std::min(column + tiles, columns_ - 1); ++u)
+        reach_[index(u, v)] = std::max(reach_[index(u, v)], reach);
+  }
+
+  int columns_, rows_;
+  std::vector<float> reach_;
+};
+
+/// The two halves of sameLayer(): most pairs end with the first.
+bool inReach(const FloodPlace& a, const FloodPlace& b, float distance2) {
+  const float reach = std::min(a.reach, b.reach);
+  return distance2 <= reach * reach;
+}
+
+bool alike(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
+  constexpr glm::vec3 kUnknown(0.0f);
+  if (seeds.normal.empty()) return true;
+  const glm::vec3 normalA = unpackFloodNormal(seeds.normal[seeds.index(a)]);
+  const glm::vec3 normalB = unpackFloodNormal(seeds.normal[seeds.index(b)]);
+  if (normalA == kUnknown || normalB == kUnknown) return true;
+  const glm::vec3 apart = seeds.position(b) - seeds.position(a);
+  const float off = std::max(std::abs(glm::dot(apart, normalA)), std::abs(glm::dot(apart, normalB)));
+  return std::abs(glm::dot(normalA, normalB)) >= settings.angle &&
+         off < settings.continuity * std::min(seeds.place[seeds.index(a)].reach, seeds.place[seeds.index(b)].reach);
+}
+
+/// Over the distance of two points whose pixels are one apart, what it is at least where the first is `metres` away.
+float leastShare(const FloodSeeds& seeds) {
+  if (!seeds.lens.perspective) return 1.0f;
+  const auto farther = [](float middle, int side) { return std::max(middle, static_cast<float>(2 * side) - middle); };
+  const float x = seeds.lens.perPixel * farther(seeds.lens.middleX, seeds.width);
+  const float y = seeds.lens.perPixel * farther(seeds.lens.middleY, seeds.height);
+  return 1.0f / std::sqrt(1.0f + x * x + y * y);
+}
+
+/// Candidates of one seed, and the room that keepClose() wants.
+struct Candidates {
+  static constexpr std::size_t kMost = 8 * (kFloodLayers + kFloodNeighbours);
+
+  template <std::size_t n>
+  void add(const std::array<FloodPixel, n>& some) {
+    std::copy(some.begin(), some.end(), seeds + count);
+    count += n;
+  }
+
+  FloodPixel seeds[kMost + kFloodTile];
+  std::size_t count = 0;
+};
+
+/// The neighbours of one seed while candidates come in.
+class NeighbourList {
+ public:
+  NeighbourList(const FloodSeeds& seeds, const FloodSettings& settings, float leastShare, FloodPixel seed,
+                FloodNeighbours& found)
+      : seeds_(seeds), settings_(settings), found_(found) {
+    const float least = 0.999f * leastShare * seeds.lens.metres(seeds.place[seeds.index(seed)].depth);
+    bounds_.seed = seed;
+    bounds_.leastPerPixel2 = least * least;
+    distancesTo(seeds, seed, found, distances_);
+    std::copy_n(distances_, kFloodNeighbours, bounds_.farthest2);
+    std::copy(found.begin(), found.end(), bounds_.held);
+    if (settings.sectors) return;
+    std::fill_n(bounds_.farthest2, kFloodNeighbours, distances_[kClosest - 1]);
+    std::fill_n(bounds_.held, kFloodNeighbours, kNoPixel);
+  }
+
+  void consider(const Candidates& candidates) {
+    FloodPixel kept[Candidates::kMost + kFloodTile];
+    float distances[Candidates::kMost + kFloodTile];
+    const std::size_t count =
+        keepClose(seeds_, settings_, bounds_, candidates.seeds, candidates.count, kept, distances);
+    for (std::size_t i = 0; i < count; ++i)
+      settings_.sectors ? considerInSector(kept[i], distances[i]) : considerOfAll(kept[i], distances[i]);
+  }
+
+ private:
+  void considerInSector(FloodPixel candidate, float distance2) {
+    const auto sector =
+        static_cast<std::size_t>(floodSector(static_cast<float>(pixelColumn(candidate) - pixelColumn(bounds_.seed)),
+                                             static_cast<float>(pixelRow(candidate) - pixelRow(bounds_.seed))));
+    if (before(distance2, candidate, sector)) put(sector, candidate, distance2);
+  }
+  void considerOfAll(FloodPixel candidate, float distance2) {
+    if (!before(distance2, candidate, kClosest - 1)) return;
+    std::size_t place = 0;
+    for (; place < kClosest && !before(distance2, candidate, place); ++place)
+      if (found_[place] == candidate) return;
+    for (std::size_t i = kClosest - 1; i > place; --i) put(i, found_[i - 1], distances_[i - 1]);
+    put(place, candidate, distance2);
+  }
+  bool before(float distance2, FloodPixel candidate, std::size_t place) const {
+    return distance2 < distances_[place] || (distance2 == distances_[place] && candidate < found_[place]);
+  }
+  void put(std::size_t i, FloodPixel candidate, float distance2) {
+    found_[i] = candidate;
+    distances_[i] = distance2;
+  }
+
+  const FloodSeeds& seeds_;
+  const FloodSettings& settings_;
+  FloodNeighbours& found_;
+  float distances_[kFloodNeighbours];
+  NeighbourBounds bounds_;
+};
+
+/// Calls visit(seed, its index) for all of them, rows at once on several threads.
+template <typename Visit>
+void forEachSeed(const FloodSeeds& seeds, const ThreadPool& pool, Visit visit) {
+  const auto width = static_cast<std::size_t>(seeds.width);
+  pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin * width; i < end * width; ++i)
+      if (seeds.at[i] != kNoPixel) visit(seeds.at[i], i);
+  });
+}
+
+LayerPlanes emptyPlanes(const FloodSeeds& seeds, int firstStep) {
+  LayerPlanes out{};
+  out.margin = firstStep + kFloodTile;
+  out.stride = static_cast<std::size_t>(seeds.width + 2 * out.margin);
+  for (std::vector<FloodPixel>& plane : out.planes)
+    plane.assign(out.stride * static_cast<std::size_t>(seeds.height), kNoPixel);
+  return out;
+}
+
+}  // namespace
+
+bool sameLayer(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
+  return inReach(seeds.place[seeds.index(a)], seeds.place[seeds.index(b)],
+                 distance2(seeds.position(a), seeds.position(b))) &&
+         alike(seeds, a, b, settings);
+}
+
+std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings& settings, const ThreadPool& pool) {
+  LayerPlanes from = emptyPlanes(seeds, settings.firstStep), to = from;
+  for (int y = 0; y < seeds.height; ++y)
+    std::copy_n(&seeds.at[static_cast<std::size_t>(y) * static_cast<std::size_t>(seeds.width)], seeds.width,
+                &from.planes[0][from.index(0, y)]);
+  const NearbyReaches reaches(seeds, static_cast<float>(2 * settings.firstStep));
+  for (int step = settings.firstStep; step > 0; step /= 2) {
+    const LayerRound round{seeds, settings, from, to, step};
+    pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (auto y = static_cast<int>(begin); y < static_cast<int>(end); ++y)
+        for (int x = 0; x < seeds.width; x += kFloodTile) {
+          if (step == 1 || static_cast<float>(step) <= reaches.at(x, y)) {
+            searchLayers(round, x, y);
+            continue;
+          }
+          for (int k = 0; k < kFloodLayers; ++k)
+            std::copy_n(&from.planes[k][from.index(x, y)], std::min(kFloodTile, seeds.width - x),
+                        &to.planes[k][to.index(x, y)]);
+        }
+    });
+    std::swap(from, to);
+  }
+  std::vector<FloodLayers> layers(seeds.at.size());
+  const auto width = static_cast<std::size_t>(seeds.width);
+  pool.parallelFor(static_cast<std::size_t>(seeds.height), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t y = begin; y < end; ++y) {
+      const std::size_t start = from.index(0, static_cast<int>(y));
+      for (std::size_t x = 0; x < width; ++x)
+        for (std::size_t k = 0; k < kFloodLayers; ++k) layers[y * width + x][k] = from.planes[k][start + x];
+    }
+  });
+  return layers;
+}
+
+std::vector<FloodNeighbours> findNeighbours(const FloodSeeds& seeds, const std::vector<FloodLayers>& layers,
+                                            const FloodSettings& settings, const ThreadPool& pool) {
+  FloodNeighbours none;
+  none.fill(kNoPixel);
+  std::vector<FloodNeighbours> from(seeds.at.size(), none), to(seeds.at.size());
+  const float least = leastShare(seeds);
+  const auto width = static_cast<std::size_t>(seeds.width);
+  for (int step = settings.firstStep; step > 0; step /= 2) {
+    forEachSeed(seeds, pool, [&](FloodPixel seed, std::size_t i) {
+      to[i] = from[i];
+      if (static_cast<float>(step) > seeds.reachPx(i)) return;
+      Candidates candidates;
+      const int x = pixelColumn(seed) / 2, y = pixelRow(seed) / 2;
+      for (int v = y - step; v <= y + step; v += step)
+        for (int u = x - step; u <= x + step; u += step) {
+          if (v < 0 || v >= seeds.height || u < 0 || u >= seeds.width || (u == x && v == y)) continue;
+          const std::size_t jump = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+          candidates.add(layers[jump]);
+          if (seeds.at[jump] != kNoPixel) candidates.add(from[jump]);
+        }
+      NeighbourList(seeds, settings, least, seed, to[i]).consider(candidates);
+    });
+    from.swap(to);
+  }
+  // Not in the paper: what the jumps missed is mostly among the neighbours' neighbours.
+  forEachSeed(seeds, pool, [&](FloodPixel seed, std::size_t i) {
+    to[i] = from[i];
+    Candidates candidates;
+    for (const FloodPixel neighbour : from[i])
+      if (neighbour != kNoPixel) candidates.add(from[seeds.index(neighbour)]);
+    NeighbourList(seeds, settings, least, seed, to[i]).consider(candidates);
+  });
+  return to;
+}
+
+}  // namespace strata

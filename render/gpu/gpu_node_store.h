@@ -1,0 +1,115 @@
+#pragma once
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <unordered_map>
+#include <vector>
+
+#include "core/draw_options.h"
+#include "core/render_list.h"
+#include "render/gl/gl_objects.h"
+#include "render/gl/gl_staging.h"
+#include "render/gpu/page_allocator.h"
+#include "render/shaders/shader_types.h"
+
+namespace strata {
+
+/// Consecutive batches of a node as they lie in one page: their boxes, then their points' planes, classes, colours.
+struct GpuPart {
+  std::uint32_t page = 0;
+  std::uint32_t firstBox = 0;  ///< word of the page; a shader::BatchBox each
+  std::uint32_t boxCount = 0;
+  std::uint32_t firstWord = 0;    ///< plane p of point i is word firstWord + p * planeStride + i - firstPoint
+  std::uint32_t planeStride = 0;  ///< a multiple of 4, as firstWord is: four points are one 128-bit load
+  std::uint32_t firstPoint = 0;   ///< within the node
+  std::uint32_t pointCount = 0;
+  std::uint32_t firstClass = 0;   ///< word of the first point's class, a byte each; 0: not there
+  std::uint32_t firstColour = 0;  ///< word of the first point's colour; 0: not there
+  std::uint32_t candidateWords = 0;
+};
+
+struct GpuNode {
+  std::vector<GpuPart> parts;  ///< by ascending firstPoint
+  int planes = 0;
+  bool oneGrid = false;         ///< all batches stand on the grid of the first; then:
+  glm::dvec3 step{0.0};         ///< metres
+  glm::dvec3 lo{0.0}, hi{0.0};  ///< bounds of the boxes in steps from the first batch's corner
+};
+
+/// What a frame reads of a node beside its positions.
+struct NodeNeeds {
+  bool classes = false;
+  bool colours = false;  ///< as words of `options`, for a mean of several points
+  const DrawOptions* options = nullptr;
+  std::uint64_t colourKey = 0;  ///< changes whenever `options` may give another colour
+};
+
+/// Nodes in storage buffers of at most kPageBytes (a driver may allow no larger block to be bound), the least recently
+/// listed node evicted first. A node longer than a part is split at its batches; so there is no limit on its length.
+/// A node is known by its shared pointer: one that was freed never stands for another that took its address, because
+/// the entry's weak pointer has expired then.
+class GpuNodeStore {
+ public:
+  static constexpr std::uint64_t kPageBytes = std::uint64_t{64} << 20;
+  static constexpr std::uint64_t kPartBytes = kPageBytes / 4;
+
+  /// `groupSize`: threads that share a batch's candidates in compute32.comp.
+  GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame,
+               std::uint32_t groupSize);
+
+  /// Frees nodes that are gone from the host and protects those of `list` from eviction.
+  void beginFrame(const RenderList& list);
+  /// Uploads the node, or what is needed and not there. Null where this frame's upload budget is used up (the first
+  /// upload of a frame always passes), no memory can be freed, or a batch is longer than a page.
+  const GpuNode* require(const std::shared_ptr<const NodeData>& node, const NodeNeeds& needs);
+
+  void bindPage(std::uint32_t page) const { pages_[page]->buffer.bindStorage(STRATA_BINDING_PAGE); }
+  /// By this frame.
+  std::uint64_t uploadedBytes() const { return uploadedBytes_; }
+  /// Of all pages; at most the `gpuBytes` of the constructor.
+  std::uint64_t gpuBytes() const { return pageBytes_; }
+
+ private:
+  struct Page {
+    Page(const GlFunctions& functions, std::uint64_t bytes)
+        : buffer(functions, bytes, gl::kStaticDraw), allocator(static_cast<std::uint32_t>(bytes / 4)) {}
+    GlBuffer buffer;
+    PageAllocator allocator;
+  };
+  struct Entry {
+    const NodeData* key;
+    std::weak_ptr<const NodeData> node;
+    GpuNode place;
+    std::vector<std::uint32_t> words;  ///< of each part
+    bool classes, colours;             ///< there is room for them
+    std::uint64_t colourKey;
+    std::uint64_t frame;  ///< the last one that listed it
+  };
+  using Entries = std::list<Entry>;
+
+  bool withinBudget(std::uint64_t bytes);
+  Entries::iterator upload(const std::shared_ptr<const NodeData>& node, const NodeNeeds& needs);
+  bool allocate(std::uint32_t words, GpuPart& part);
+  bool addPage(std::uint32_t words);
+  void releaseParts(const GpuNode& place, const std::vector<std::uint32_t>& words);
+  void writePart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t words,
+                 const NodeNeeds& needs);
+  void writeColours(const NodeData& node, const GpuPart& part, const NodeNeeds& needs);
+  Entries::iterator erase(Entries::iterator entry);
+
+  const GlFunctions& gl_;
+  const std::uint64_t maxBytes_;
+  const std::uint64_t maxPageBytes_;
+  const std::uint64_t uploadBytesPerFrame_;
+  const std::uint32_t groupSize_;
+  std::vector<std::unique_ptr<Page>> pages_;
+  Entries entries_;  ///< least recently listed first
+  std::unordered_map<const NodeData*, Entries::iterator> index_;
+  GlStaging staging_;
+  std::uint64_t frame_ = 0;
+  std::uint64_t pageBytes_ = 0;
+  std::uint64_t uploadedBytes_ = 0;
+  bool driverIsFull_ = false;
+};
+
+}  // namespace strata

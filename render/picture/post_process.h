@@ -1,0 +1,71 @@
+#pragma once
+#include <algorithm>
+#include <glm/gtc/type_precision.hpp>
+#include <vector>
+
+#include "core/draw_options.h"
+#include "core/picture.h"
+#include "core/view.h"
+#include "render/picture/visibility.h"
+#include "render/thread_pool.h"
+
+namespace strata {
+
+/// How many pixels wide a point at some depth is drawn.
+class PointSizes {
+ public:
+  /// All alike.
+  explicit PointSizes(int pixels);
+  PointSizes(const DrawOptions& options, const View& view);
+
+  int at(float depth) const {
+    const float pixels = pixelsAtUnitDepth_ / (perspective_ ? depth : 1.0f);
+    return pixels > static_cast<float>(least_)
+               ? static_cast<int>(std::min(pixels + 0.5f, static_cast<float>(DrawOptions::kLargestPoint)))
+               : least_;
+  }
+  /// True where at() is the same for every depth.
+  bool even() const { return pixelsAtUnitDepth_ <= 0.0f; }
+  bool alwaysOne() const { return least_ <= 1 && pixelsAtUnitDepth_ <= 0.0f; }
+
+ private:
+  int least_ = 1;
+  float pixelsAtUnitDepth_ = 0.0f;
+  bool perspective_ = true;
+};
+
+/// How large the window of fillHoles() is at a pixel: 1, 3, 5 or 7.
+class FillSizes {
+ public:
+  /// With DrawOptions::gaze at least 3 near the gaze, 5 and 7 farther out (Schütz 2022, 3.6), in its three parts.
+  FillSizes(const DrawOptions& options, const View& view);
+
+  int at(int x, int y) const;
+  bool none() const { return least_ <= 1 && !gaze_; }
+
+ private:
+  int least_ = 1;
+  bool gaze_ = false;
+  float atX_ = 0.0f, atY_ = 0.0f;  ///< pixels of the whole picture
+  int left_ = 0, top_ = 0;         ///< of the image in it
+  float third_ = 1.0f;
+};
+
+/// Depth-aware dilation: a pixel that is empty, or lies more than kBlendDepth behind the nearest pixel of the window
+/// around it, takes that of the pixels not so far behind which is closest in the picture (of equally close ones the
+/// upper, then the left). What is in front stays as it is.
+void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool);
+
+/// Lets every point cover a square of pixels: a pixel takes the nearest of the points that cover it.
+/// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be
+/// done one after the other, since a nearer point is never the smaller one.
+void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool);
+
+/// Eye-dome lighting (Boucheny 2009): darkens a pixel by how far its eight neighbours stand in front of it,
+/// in log2 of the depth, so that the effect does not depend on the scene's scale. The background stays.
+/// Neighbours are as far away as points are wide, so that single points of a slope do not get outlines.
+/// `scratch` is memory to work in, of any size.
+void eyeDomeLighting(Picture& frame, float strength, const PointSizes& sizes, std::vector<float>& scratch,
+                     const ThreadPool& pool);
+
+}  // namespace strata

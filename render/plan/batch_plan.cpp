@@ -1,0 +1,213 @@
+#include "render/plan/batch_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "render/plan/grid_transform.h"
+
+namespace strata {
+namespace {
+
+constexpr double kSurePx = 0.05;  ///< more than float arithmetic moves a point
+
+bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+glm::dvec3 boxMinFromEye(const ViewConstants& constants, const NodeData& node, const Batch& batch) {
+  return (node.origin - constants.view.eye) + batch.boxMin;
+}
+
+}  // namespace
+
+ViewConstants viewConstants(const View& view) {
+  ViewConstants c;
+  c.view = view;
+  c.projection = projection(view);
+  c.planes = frustumPlanes(view);
+  const View whole = wholePicture(view);
+  const Projection p = projection(whole);
+  c.rowX = p.rowX - p.rowW * (0.5 * whole.width);
+  c.rowY = p.rowY - p.rowW * (0.5 * whole.height);
+  c.pixelsPerMetre = glm::length(glm::dvec3(c.rowY));
+  if (!view.orthographic && c.pixelsPerMetre > 0.0) {
+    const double halfDiagonal = 0.5 * std::hypot(whole.width, whole.height);
+    c.cornerStretch = std::hypot(1.0, halfDiagonal / c.pixelsPerMetre);
+  }
+  c.drawable = view.width > 0 && view.height > 0 && finite(view.eye) && finite(c.rowX) && finite(c.rowY) &&
+               finite(c.projection.rowDepth) && std::isfinite(view.nearPlane);
+  return c;
+}
+
+Viewport viewport(const ViewConstants& c) {
+  Viewport v;
+  v.width = static_cast<float>(c.view.width);
+  v.height = static_cast<float>(c.view.height);
+  const View whole = wholePicture(c.view);
+  v.halfWidth = 0.5f * static_cast<float>(whole.width);
+  v.halfHeight = 0.5f * static_cast<float>(whole.height);
+  v.left = static_cast<float>(c.view.part.left);
+  v.top = static_cast<float>(c.view.part.top);
+  v.nearDepth = std::max(static_cast<float>(c.view.nearPlane), std::numeric_limits<float>::min());
+  v.perspective = !c.view.orthographic;
+  return v;
+}
+
+double projectedSizePx(const ViewConstants& c, const NodeData& node, const Batch& batch) {
+  const double longest = std::max({batch.boxSize.x, batch.boxSize.y, batch.boxSize.z});
+  if (c.view.orthographic) return longest * c.pixelsPerMetre;
+  const glm::dvec3 lo = boxMinFromEye(c, node, batch);
+  double nearest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double forward = c.projection.rowDepth[axis];
+    nearest += forward * (forward >= 0.0 ? lo[axis] : lo[axis] + batch.boxSize[axis]);
+  }
+  return longest * c.pixelsPerMetre * c.cornerStretch / std::max({nearest, c.view.nearPlane, 1e-9});
+}
+
+Precision batchPrecision(const ViewConstants& c, const NodeData& node, const Batch& batch) {
+  const double size = projectedSizePx(c, node, batch);
+  const int wanted = size < kPixelsAt10Bits ? 1 : size < kPixelsAt20Bits ? 2 : 3;
+  const int bits = std::max({int{batch.bits.x}, int{batch.bits.y}, int{batch.bits.z}});
+  const int filled = bits <= 10 ? 1 : bits <= 20 ? 2 : 3;
+  return static_cast<Precision>(std::min({wanted, filled, node.loadedPlanes()}));
+}
+
+bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
+  if (!gaze.on || node.batches.empty()) return true;
+  glm::dvec3 lo(std::numeric_limits<double>::infinity()), hi(-std::numeric_limits<double>::infinity());
+  for (const Batch& batch : node.batches) {
+    lo = glm::min(lo, boxMinFromEye(c, node, batch));
+    hi = glm::max(hi, boxMinFromEye(c, node, batch) + batch.boxSize);
+  }
+  const glm::dvec4 centre(0.5 * (lo + hi), 1.0);
+  const double radius = 0.5 * glm::distance(lo, hi);
+  const double depth = glm::dot(c.projection.rowDepth, centre);
+  if (depth - radius <= c.view.nearPlane) return true;
+  const double w = glm::dot(c.projection.rowW, centre);
+  const glm::dvec2 place(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
+  const View whole = wholePicture(c.view);
+  const glm::dvec2 at =
+      glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.part.left, c.view.part.top);
+  const double away = glm::distance(place, at) / std::max(whole.height, 1);
+  const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
+  const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;
+  const glm::dvec3 size = hi - lo;
+  return std::max({size.x, size.y, size.z}) * c.pixelsPerMetre / (c.view.orthographic ? 1.0 : depth) >= least;
+}
+
+namespace {
+
+enum class Side { outside, partly, inside };
+
+/// Of a box given by its corners, both relative to the eye, against planes that point inwards.
+template <typename Planes>
+Side sideOf(const Planes& planes, const glm::dvec3& lo, const glm::dvec3& hi) {
+  Side side = Side::inside;
+  for (const glm::dvec4& plane : planes) {
+    double nearest = plane.w, farthest = plane.w;
+    for (int axis = 0; axis < 3; ++axis) {
+      nearest += std::min(plane[axis] * lo[axis], plane[axis] * hi[axis]);
+      farthest += std::max(plane[axis] * lo[axis], plane[axis] * hi[axis]);
+    }
+    if (farthest < 0.0) return Side::outside;
+    if (!(nearest >= 0.0)) side = Side::partly;
+  }
+  return side;
+}
+
+/// The clip region relative to the eye.
+struct EyeClip {
+  EyeClip(const Clip& clip, const glm::dvec3& eye) {
+    for (const Box& box : clip.boxes) boxes.push_back({box.min - eye, box.max - eye});
+    for (const Box& box : clip.cutouts) cutouts.push_back({box.min - eye, box.max - eye});
+    for (const glm::dvec4& plane : clip.planes)
+      planes.emplace_back(glm::dvec3(plane), glm::dot(plane, glm::dvec4(eye, 1.0)));
+  }
+  Side side(const glm::dvec3& lo, const glm::dvec3& hi) const {
+    Side inBoxes = boxes.empty() ? Side::inside : Side::outside;
+    for (const Box& box : boxes) inBoxes = std::max(inBoxes, sideOfBox(box, lo, hi));
+    for (const Box& cutout : cutouts) {
+      const Side side = sideOfBox(cutout, lo, hi);
+      const Side left = side == Side::inside ? Side::outside : side == Side::partly ? Side::partly : Side::inside;
+      inBoxes = std::min(inBoxes, left);
+    }
+    return std::min(inBoxes, sideOf(planes, lo, hi));
+  }
+
+  static Side sideOfBox(const Box& box, const glm::dvec3& lo, const glm::dvec3& hi) {
+    if (box.contains(lo) && box.contains(hi)) return Side::inside;
+    const bool apart = glm::any(glm::lessThan(hi, box.min)) || glm::any(glm::greaterThan(lo, box.max));
+    return apart ? Side::outside : Side::partly;
+  }
+
+  std::vector<Box> boxes, cutouts;
+  std::vector<glm::dvec4> planes;
+};
+
+/// The image and the near plane, smaller by what rounding may move a point.
+std::array<glm::dvec4, 5> surePlanes(const ViewConstants& c) {
+  const Projection& p = c.projection;
+  const glm::dvec4 nearest(0.0, 0.0, 0.0, 1.0001 * c.view.nearPlane);
+  return {p.rowX - p.rowW * kSurePx, p.rowW * (c.view.width - kSurePx) - p.rowX, p.rowY - p.rowW * kSurePx,
+          p.rowW * (c.view.height - kSurePx) - p.rowY, p.rowDepth - nearest};
+}
+
+}  // namespace
+
+void planBatches(const RenderList& list, const View& view, const DrawOptions& options, DrawPlan& plan) {
+  plan.constants = viewConstants(view);
+  plan.grids.clear();
+  plan.batches.clear();
+  plan.pointCount = 0;
+  plan.batchesCulled = 0;
+  std::fill(std::begin(plan.batchesAt), std::end(plan.batchesAt), 0u);
+  if (!plan.constants.drawable) return;
+  GridFinder finder(plan.constants, options.clip, plan.grids);
+  const EyeClip clip(options.clip, view.eye);
+  const std::array<glm::dvec4, 5> sure = surePlanes(plan.constants);
+  std::uint32_t firstId = 0;
+  for (std::size_t i = 0; i < list.items.size(); firstId += list.items[i++].pointCount) {
+    const NodeData* node = list.items[i].node.get();
+    if (node == nullptr) continue;
+    const std::uint32_t prefix = std::min(list.items[i].pointCount, node->pointCount());
+    const bool kept = gazeKeeps(plan.constants, options.gaze, *node);
+    for (const Batch& batch : node->batches) {
+      if (batch.firstPoint >= prefix) break;
+      PlannedBatch planned;
+      planned.pointCount = std::min(batch.pointCount, prefix - batch.firstPoint);
+      if (planned.pointCount == 0) continue;
+      const glm::dvec3 lo = boxMinFromEye(plan.constants, *node, batch), hi = lo + batch.boxSize;
+      planned.precision = batchPrecision(plan.constants, *node, batch);
+      const Side clipSide = clip.side(lo, hi);
+      std::optional<GridPlace> place;
+      if (kept && clipSide != Side::outside && boxInFrustum(plan.constants.planes, lo, hi))
+        place = finder.place(*node, batch, planned.precision);
+      if (!place) {
+        ++plan.batchesCulled;
+        continue;
+      }
+      planned.place = *place;
+      planned.clipped = clipSide == Side::partly;
+      planned.inside = sideOf(sure, lo, hi) == Side::inside;
+      planned.node = node;
+      planned.item = static_cast<std::uint32_t>(i);
+      planned.firstPoint = batch.firstPoint;
+      planned.firstId = firstId + batch.firstPoint;
+      ++plan.batchesAt[static_cast<int>(planned.precision) - 1];
+      plan.pointCount += planned.pointCount;
+      plan.batches.push_back(planned);
+    }
+  }
+}
+
+DrawStats planStats(const DrawPlan& plan) {
+  DrawStats stats;
+  stats.pointsDrawn = plan.pointCount;
+  stats.batchesDrawn = static_cast<std::uint32_t>(plan.batches.size());
+  stats.batchesCulled = plan.batchesCulled;
+  std::copy(std::begin(plan.batchesAt), std::end(plan.batchesAt), std::begin(stats.batchesAt));
+  return stats;
+}
+
+}  // namespace strata

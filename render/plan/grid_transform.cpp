@@ -1,0 +1,110 @@
+#include "render/plan/grid_transform.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace strata {
+namespace {
+
+constexpr double kLargestFloat = 1e30;      ///< beyond it products of floats may overflow
+constexpr double kOffGrid = 1e-4;           ///< steps that a corner may be off and still be on the grid: doubles round
+constexpr double kLargestSteps = 1.0e15;    ///< that a double counts exactly, with room
+constexpr double kLargestOffset = 2.147e9;  ///< steps; a little below 2^31
+constexpr std::size_t kMostGrids = 64;      ///< stores in one list; what comes after them has grids of its own
+
+bool usable(const glm::vec4& row) {
+  for (int i = 0; i < 4; ++i)
+    if (!(std::abs(static_cast<double>(row[i])) < kLargestFloat)) return false;
+  return true;
+}
+
+bool countable(const glm::dvec3& steps) {
+  return std::abs(steps.x) < kLargestSteps && std::abs(steps.y) < kLargestSteps && std::abs(steps.z) < kLargestSteps;
+}
+
+}  // namespace
+
+const GridFinder::Grid* GridFinder::find(const glm::dvec3& step, const glm::dvec3& corner) {
+  if (!(std::min({step.x, step.y, step.z}) > 0.0)) return nullptr;
+  for (const Grid& grid : known_) {
+    if (grid.step != step) continue;
+    const glm::dvec3 steps = (corner - grid.point) / step;
+    const glm::dvec3 off = glm::abs(steps - glm::round(steps));
+    if (countable(steps) && std::max({off.x, off.y, off.z}) < kOffGrid) return &grid;
+  }
+  const glm::dvec3 eyeCell = glm::round((constants_.view.eye - corner) / step);
+  if (known_.size() >= kMostGrids || !countable(eyeCell)) return nullptr;
+  if (!addTransform(step, (corner - constants_.view.eye) + eyeCell * step)) return nullptr;
+  known_.push_back({step, corner, eyeCell, static_cast<std::uint32_t>(grids_.size() - 1)});
+  return &known_.back();
+}
+
+bool GridFinder::addTransform(const glm::dvec3& step, const glm::dvec3& rest) {
+  const auto fold = [&](const glm::dvec4& row) {
+    const glm::dvec3 direction(row);
+    return glm::vec4(glm::dvec4(direction * step, glm::dot(direction, rest) + row.w));
+  };
+  GridTransform t;
+  t.x = fold(constants_.rowX);
+  t.y = fold(constants_.rowY);
+  t.depth = fold(constants_.projection.rowDepth);
+  if (!usable(t.x) || !usable(t.y) || !usable(t.depth)) return false;
+  const glm::dvec3 origin = constants_.view.eye + rest;
+  const glm::dvec3 least = glm::max(step, 1e-300);
+  const auto inSteps = [&](const Box& box) {
+    return ClipSteps{glm::vec3((box.min - origin) / least), glm::vec3((box.max - origin) / least)};
+  };
+  for (const Box& box : clip_.boxes) t.clipBoxes.push_back(inSteps(box));
+  for (const Box& box : clip_.cutouts) t.clipCutouts.push_back(inSteps(box));
+  for (const glm::dvec4& plane : clip_.planes)
+    t.clipPlanes.push_back(fold(glm::dvec4(glm::dvec3(plane), glm::dot(plane, glm::dvec4(constants_.view.eye, 1.0)))));
+  grids_.push_back(std::move(t));
+  return true;
+}
+
+std::optional<GridFinder::OnGrid> GridFinder::gridOf(const glm::dvec3& step, const glm::dvec3& corner) {
+  const Grid* grid = find(step, corner);
+  if (grid == nullptr) return std::nullopt;
+  return OnGrid{grid->index, glm::round((corner - grid->point) / grid->step) - grid->eyeCell};
+}
+
+std::optional<GridPlace> GridFinder::place(const NodeData& node, const Batch& batch, Precision precision) {
+  const glm::dvec3 steps = glm::exp2(glm::dvec3(batch.bits));
+  const glm::dvec3 corner = node.origin + batch.boxMin;
+  const std::optional<OnGrid> grid = gridOf(batch.boxSize / steps, corner);
+  if (!grid) return placeAlone(node, batch, precision);
+  const glm::dvec3& first = grid->first;
+  GridPlace place;
+  place.grid = grid->index;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(std::abs(first[axis]) + steps[axis] < kLargestOffset)) return placeAlone(node, batch, precision);
+    place.shift[axis] = batch.bits[axis] - 10 * static_cast<int>(precision);
+    const int half = place.shift[axis] > 0 ? 1 << (place.shift[axis] - 1) : 0;
+    place.offset[axis] = static_cast<int>(first[axis]) + half;
+  }
+  return place;
+}
+
+std::optional<GridPlace> GridFinder::placeAlone(const NodeData& node, const Batch& batch, Precision precision) {
+  const int bits = 10 * static_cast<int>(precision);
+  const double cells = static_cast<double>(1u << bits);
+  const glm::dvec3 lo = (node.origin - constants_.view.eye) + batch.boxMin;
+  GridPlace place;
+  glm::dvec3 cell, rest;
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[axis] = batch.boxSize[axis] / cells;
+    const double half = batch.bits[axis] > bits ? 0.5 : 0.0;
+    const double first = lo[axis] + half * cell[axis];  // of X = 0
+    double eyeCell = cell[axis] > 0.0 ? std::round(-first / cell[axis]) : 0.0;
+    eyeCell = std::clamp(eyeCell, -0.9 * cells, 1.9 * cells);
+    if (!std::isfinite(eyeCell)) return std::nullopt;
+    eyeCell = std::round(eyeCell);  // X - E then fits 32 bits
+    place.offset[axis] = -static_cast<int>(eyeCell);
+    rest[axis] = first + eyeCell * cell[axis];
+  }
+  if (!addTransform(cell, rest)) return std::nullopt;
+  place.grid = static_cast<std::uint32_t>(grids_.size() - 1);
+  return place;
+}
+
+}  // namespace strata

@@ -1,0 +1,355 @@
+// Who may include whom. The rules are those of docs/architecture.md; this file is where they are enforced.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/paths.h"
+
+namespace strata {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Names = std::set<std::string_view>;
+
+/// The rule of one wing: which other wings, and which libraries besides the standard one and GLM, it may include.
+struct WingRule {
+  Names wings;
+  Names libraries;
+};
+
+/// A wing is a folder. The three files in kTops form wings of their own: each lies beside the wings that it joins.
+const std::map<std::string_view, WingRule> kRules{
+    {"core", {{}, {"spdlog", "PNG"}}},
+
+    {"io/file", {{"core"}, {"POSIX", "xxHash"}}},
+    {"io/store", {{"core", "io/file"}, {"POSIX", "LZ4", "xxHash", "nlohmann"}}},
+    {"io/scan", {{"core", "io/store"}, {}}},
+    {"io/las", {{"core", "io/file", "io/store", "io/scan"}, {"POSIX", "LASzip"}}},
+    {"io/table", {{"core", "io/file", "io/store", "io/scan"}, {"POSIX", "PCL"}}},
+    {"io/synthetic", {{"core", "io/scan"}, {}}},
+    {"io/open_scans", {{"core", "io/file", "io/scan", "io/las", "io/table", "io/synthetic"}, {}}},
+
+    {"lod", {{"core", "io/store"}, {"POSIX"}}},
+
+    {"render", {{"core"}, {"POSIX", "TBB"}}},
+    {"render/plan", {{"core", "render"}, {"TBB"}}},
+    {"render/shaders", {{}, {}}},
+    {"render/gl", {{"core"}, {"POSIX", "GL", "EGL", "OSMesa"}}},
+    {"render/flood", {{"core", "render", "render/plan", "render/gl", "render/shaders"}, {"TBB", "Highway", "GL"}}},
+    {"render/picture", {{"core", "render", "render/plan", "render/flood"}, {"TBB", "Highway"}}},
+    {"render/cpu", {{"core", "render", "render/plan", "render/picture"}, {"TBB", "Highway"}}},
+    {"render/gpu",
+     {{"core", "render", "render/plan", "render/gl", "render/shaders", "render/flood", "render/picture"},
+      {"TBB", "GL"}}},
+    {"render/progressive",
+     {{"core", "render", "render/plan", "render/gl", "render/shaders", "render/flood", "render/picture", "render/gpu"},
+      {"TBB", "GL"}}},
+    {"render/create_rasterizer",
+     {{"core", "render", "render/gl", "render/cpu", "render/gpu", "render/progressive"}, {}}},
+
+    {"converter", {{"core", "io/scan", "io/store"}, {}}},
+    {"converter/memory", {{"core"}, {"POSIX"}}},
+    {"converter/journal", {{"core", "io/file", "io/scan", "io/store", "converter"}, {"POSIX", "xxHash"}}},
+    {"converter/survey", {{"core", "io/scan", "io/store", "converter"}, {"TBB"}}},
+    {"converter/distribute",
+     {{"core", "io/file", "io/scan", "io/store", "converter", "converter/memory", "converter/journal",
+       "converter/survey"},
+      {"POSIX", "TBB", "xxHash"}}},
+    {"converter/build",
+     {{"core", "io/file", "io/store", "converter", "converter/memory", "converter/journal", "converter/distribute"},
+      {"POSIX", "TBB", "Eigen"}}},
+    {"converter/normals",
+     {{"core", "io/file", "io/store", "converter", "converter/memory", "converter/journal"},
+      {"POSIX", "TBB", "Eigen", "PCL"}}},
+    {"converter/convert",
+     {{"core", "io/file", "io/scan", "io/store", "io/open_scans", "converter", "converter/journal", "converter/survey",
+       "converter/distribute", "converter/build", "converter/normals"},
+      {"POSIX", "TBB"}}},
+    {"converter/programs",
+     {{"core", "io/file", "io/scan", "io/store", "io/open_scans", "converter", "converter/convert", "converter/journal",
+       "converter/survey"},
+      {"POSIX", "CLI11", "nlohmann"}}},
+
+    {"viewer/camera", {{"core", "io/file", "io/store"}, {"nlohmann"}}},
+    {"viewer/tools", {{"core", "io/store", "io/table", "render/picture", "viewer/camera"}, {"nlohmann"}}},
+    {"viewer/session",
+     {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "render/picture",
+       "render/progressive", "viewer/camera", "viewer/tools"},
+      {"POSIX", "CLI11", "nlohmann"}}},
+    {"viewer/output",
+     {{"core", "io/file", "lod", "render", "render/plan", "viewer/camera", "viewer/session"}, {"POSIX"}}},
+    {"viewer/bench",
+     {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "viewer/camera",
+       "viewer/session", "viewer/output"},
+      {"POSIX", "CLI11", "nlohmann"}}},
+    {"viewer/window",
+     {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "render/picture",
+       "render/progressive", "viewer/camera", "viewer/tools", "viewer/session", "viewer/output"},
+      {"POSIX", "GL", "GLFW", "ImGui", "CLI11", "nlohmann"}}},
+};
+
+/// The files that join the wings around them.
+const Names kTops{"io/open_scans", "render/create_rasterizer", "converter/convert"};
+
+/// Libraries that stand in exactly one .cpp of ours.
+const Names kInOneFile{"spdlog", "PNG", "OSMesa"};
+/// Core holds values: nothing of it starts a thread or waits for one. Only core/mutex.h names locks, for the others.
+const Names kNotInCore{"thread", "mutex",     "shared_mutex", "condition_variable",
+                       "future", "semaphore", "latch",        "barrier"};
+
+constexpr int kMaxLines = 700;
+
+/// Beginnings of header names, the longer before the shorter ("GL/osmesa.h" before "GL/").
+const std::vector<std::pair<std::string_view, std::string_view>> kLibraries{
+    {"glm/", "GLM"},     {"spdlog/", "spdlog"}, {"fmt/", "spdlog"},
+    {"png.h", "PNG"},    {"laszip/", "LASzip"}, {"pcl/", "PCL"},
+    {"lz4", "LZ4"},      {"xxhash", "xxHash"},  {"nlohmann/", "nlohmann"},
+    {"tbb/", "TBB"},     {"oneapi/", "TBB"},    {"Eigen/", "Eigen"},
+    {"hwy/", "Highway"}, {"CLI/", "CLI11"},     {"GL/osmesa", "OSMesa"},
+    {"GL/", "GL"},       {"KHR/", "GL"},        {"EGL/", "EGL"},
+    {"GLFW/", "GLFW"},   {"imgui", "ImGui"},    {"gtest/", "GoogleTest"},
+    {"sys/", "POSIX"},   {"linux/", "POSIX"},
+};
+const Names kPosixHeaders{"unistd.h", "fcntl.h", "dlfcn.h", "dirent.h", "poll.h",  "pthread.h", "sched.h",
+                          "signal.h", "spawn.h", "stdio.h", "stdlib.h", "errno.h", "malloc.h"};
+
+/// "io/las/las_header.cpp" and "io/las/las_header.h" belong to the module "io/las/las_header".
+std::string moduleOf(std::string_view path) { return std::string(path.substr(0, path.rfind('.'))); }
+
+/// The wing of a file of ours; "unknown" where kRules has none.
+std::string_view wingOf(std::string_view path) {
+  const std::string module = moduleOf(path);
+  if (const auto top = kTops.find(module); top != kTops.end()) return *top;
+  const std::size_t slash = path.rfind('/');
+  const auto rule = kRules.find(slash == std::string_view::npos ? path : path.substr(0, slash));
+  return rule != kRules.end() ? rule->first : "unknown";
+}
+
+/// "std" for the standard library, the name of one of our wings, a library's name, or "unknown".
+std::string_view ownerOf(std::string_view header) {
+  for (const auto& [beginning, library] : kLibraries)
+    if (header.starts_with(beginning)) return library;
+  if (kPosixHeaders.contains(header)) return "POSIX";
+  if (header.find('/') != std::string_view::npos) return wingOf(header);
+  return header.find('.') == std::string_view::npos ? "std" : "unknown";
+}
+
+bool isHeader(std::string_view file) { return file.ends_with(".h"); }
+
+/// Why `file` ("io/las/las_source.cpp") must not include `header`; empty when it may.
+std::string objection(std::string_view file, std::string_view header) {
+  const std::string_view wing = wingOf(file);
+  if (wing == "unknown") return std::string(file) + ": lies in no wing that this test knows";
+  const WingRule& rule = kRules.at(wing);
+  const std::string_view owner = ownerOf(header);
+  const std::string where = std::string(file) + " includes " + std::string(header) + ": ";
+  if (owner == "std")
+    return wing == "core" && file != "core/mutex.h" && kNotInCore.contains(header) ? where + "core starts no threads"
+                                                                                   : std::string();
+  if (owner == "GLM" || owner == wing || rule.wings.contains(owner)) return {};
+  if (kRules.contains(owner)) return where + std::string(wing) + " must not know " + std::string(owner);
+  if (owner == "unknown") return where + "neither a path from the root of the sources nor a known library";
+  if (!rule.libraries.contains(owner)) return where + std::string(wing) + " must not use " + std::string(owner);
+  if (isHeader(file) && owner != "POSIX") return where + "a third-party header in a header of ours";
+  return {};
+}
+
+std::vector<std::string> includesOf(const fs::path& file) {
+  static const std::regex include(R"re(^\s*#\s*include\s*[<"]([^>"]+)[>"].*)re");
+  std::vector<std::string> headers;
+  std::ifstream in(file);
+  std::smatch match;
+  for (std::string line; std::getline(in, line);)
+    if (std::regex_match(line, match, include)) headers.push_back(match[1]);
+  return headers;
+}
+
+/// Paths from the root of the sources, sorted.
+std::vector<std::string> filesIn(const std::vector<std::string_view>& folders, const Names& endings) {
+  const fs::path root = test::sourceFolder();
+  std::vector<std::string> files;
+  for (const std::string_view folder : folders)
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file() && endings.contains(entry.path().extension().string()))
+        files.push_back(entry.path().lexically_relative(root).string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+const std::vector<std::string_view> kLayers{"core", "io", "lod", "render", "converter", "viewer"};
+const std::vector<std::string_view> kLayersAndTests{"core", "io", "lod", "render", "converter", "viewer", "tests"};
+
+/// Which modules of ours each module includes, by its header or its source.
+std::map<std::string, std::set<std::string>> moduleGraph() {
+  std::map<std::string, std::set<std::string>> graph;
+  for (const std::string& file : filesIn(kLayers, {".h", ".cpp"})) {
+    std::set<std::string>& included = graph[moduleOf(file)];
+    for (const std::string& header : includesOf(test::sourceFolder() / file))
+      if (kRules.contains(ownerOf(header)) && moduleOf(header) != moduleOf(file)) included.insert(moduleOf(header));
+  }
+  return graph;
+}
+
+/// A way through `graph` that ends where it began, as "a -> b -> a"; empty where there is none.
+std::string findCircle(const std::map<std::string, std::set<std::string>>& graph) {
+  std::set<std::string> finished;
+  std::vector<std::string> way;
+  const auto visit = [&](const auto& self, const std::string& module) -> std::string {
+    if (finished.contains(module)) return {};
+    const auto met = std::find(way.begin(), way.end(), module);
+    way.push_back(module);
+    if (met != way.end()) {
+      std::string circle;
+      for (auto at = std::find(way.begin(), way.end(), module); at != way.end(); ++at)
+        circle += (circle.empty() ? "" : " -> ") + *at;
+      return circle;
+    }
+    if (const auto node = graph.find(module); node != graph.end())
+      for (const std::string& next : node->second)
+        if (std::string circle = self(self, next); !circle.empty()) return circle;
+    way.pop_back();
+    finished.insert(module);
+    return {};
+  };
+  for (const auto& [module, included] : graph)
+    if (std::string circle = visit(visit, module); !circle.empty()) return circle;
+  return {};
+}
+
+TEST(Wings, NoSourceIncludesWhatItsWingMustNotKnow) {
+  const std::vector<std::string> files = filesIn(kLayers, {".h", ".cpp"});
+  ASSERT_GT(files.size(), 10u);
+  std::size_t includes = 0;
+  for (const std::string& file : files)
+    for (const std::string& header : includesOf(test::sourceFolder() / file)) {
+      EXPECT_EQ(objection(file, header), "");
+      ++includes;
+    }
+  EXPECT_GT(includes, files.size()) << "the include lines are not being found";
+}
+
+TEST(Wings, NoWingMayIncludeOneThatMayIncludeIt) {
+  std::map<std::string, std::set<std::string>> graph;
+  for (const auto& [wing, rule] : kRules)
+    for (const std::string_view other : rule.wings) graph[std::string(wing)].insert(std::string(other));
+  EXPECT_EQ(findCircle(graph), "");
+}
+
+TEST(Wings, NoModuleIncludesOneThatIncludesIt) { EXPECT_EQ(findCircle(moduleGraph()), ""); }
+
+TEST(Wings, TheSearchForCirclesFindsOne) {
+  EXPECT_EQ(findCircle({{"a", {"b", "d"}}, {"b", {"c"}}, {"c", {"b"}}, {"d", {}}}), "b -> c -> b");
+  EXPECT_EQ(findCircle({{"a", {"b", "c"}}, {"b", {"c"}}, {"c", {}}}), "");
+}
+
+TEST(Wings, ALibraryThatIsHiddenIsIncludedByOneSource) {
+  std::map<std::string_view, std::set<std::string>> users;
+  for (const std::string& file : filesIn(kLayers, {".cpp"}))
+    for (const std::string& header : includesOf(test::sourceFolder() / file))
+      if (kInOneFile.contains(ownerOf(header))) users[ownerOf(header)].insert(file);
+  for (const auto& [library, files] : users)
+    EXPECT_EQ(files.size(), 1u) << library << " is included in " << *files.begin() << " and " << *files.rbegin();
+}
+
+TEST(Wings, TheCheckRefusesForbiddenIncludes) {
+  EXPECT_NE(objection("core/box.h", "io/store/store.h"), "");
+  EXPECT_NE(objection("core/view.cpp", "lz4.h"), "");
+  EXPECT_NE(objection("core/log.cpp", "thread"), "");
+  EXPECT_NE(objection("io/store/store.cpp", "lod/selection.h"), "");
+  EXPECT_NE(objection("io/store/store.cpp", "io/las/las_header.h"), "");
+  EXPECT_NE(objection("io/store/store.cpp", "io/scan/point_source.h"), "");
+  EXPECT_NE(objection("io/store/store.cpp", "tbb/parallel_for.h"), "");
+  EXPECT_NE(objection("io/table/ply_source.cpp", "io/las/las_header.h"), "");
+  EXPECT_NE(objection("io/las/las_source.cpp", "io/open_scans.h"), "");
+  EXPECT_NE(objection("io/las/las_source.h", "laszip/laszip_api.h"), "");
+  EXPECT_NE(objection("io/las/las_source.cpp", "../core/box.h"), "");
+  EXPECT_NE(objection("io/las/las_source.cpp", "somelib.h"), "");
+  EXPECT_NE(objection("io/las/las_source.cpp", "boost/optional.hpp"), "");
+  EXPECT_NE(objection("lod/streamer.cpp", "render/rasterizer.h"), "");
+  EXPECT_NE(objection("lod/streamer.cpp", "io/las/las_source.h"), "");
+  EXPECT_NE(objection("lod/streamer.cpp", "GL/gl.h"), "");
+  EXPECT_NE(objection("lod/streamer.cpp", "tbb/parallel_for.h"), "");
+  EXPECT_NE(objection("render/cpu/cpu_rasterizer.cpp", "io/store/store.h"), "");
+  EXPECT_NE(objection("render/cpu/cpu_rasterizer.cpp", "lod/streamer.h"), "");
+  EXPECT_NE(objection("render/cpu/cpu_rasterizer.cpp", "render/gl/gl_context.h"), "");
+  EXPECT_NE(objection("render/rasterizer.h", "render/create_rasterizer.h"), "");
+  EXPECT_NE(objection("converter/build/merge.cpp", "lod/selection.h"), "");
+  EXPECT_NE(objection("converter/build/merge.cpp", "converter/convert.h"), "");
+  EXPECT_NE(objection("viewer/window/viewer_app.cpp", "converter/convert.h"), "");
+  EXPECT_NE(objection("viewer/session/layers.cpp", "viewer/bench/measures.h"), "");
+  EXPECT_NE(objection("viewer/nowhere/main.cpp", "core/box.h"), "");
+}
+
+TEST(Wings, TheCheckAllowsWhatTheDesignAllows) {
+  EXPECT_EQ(objection("core/box.h", "glm/glm.hpp"), "");
+  EXPECT_EQ(objection("core/image.cpp", "png.h"), "");
+  EXPECT_EQ(objection("io/las/laz_codec.cpp", "laszip/laszip_api.h"), "");
+  EXPECT_EQ(objection("io/file/byte_source.cpp", "sys/stat.h"), "");
+  EXPECT_EQ(objection("io/open_scans.cpp", "io/las/las_source.h"), "");
+  EXPECT_EQ(objection("lod/streamer.h", "thread"), "");
+  EXPECT_EQ(objection("lod/streamer.cpp", "io/store/node_codec.h"), "");
+  EXPECT_EQ(objection("render/gl/osmesa_context.cpp", "GL/osmesa.h"), "");
+  EXPECT_EQ(objection("render/cpu/cpu_kernel.cpp", "hwy/highway.h"), "");
+  EXPECT_EQ(objection("render/create_rasterizer.cpp", "render/cpu/cpu_rasterizer.h"), "");
+  EXPECT_EQ(objection("converter/convert.cpp", "converter/build/merge.h"), "");
+  EXPECT_EQ(objection("converter/build/merge.cpp", "tbb/parallel_for.h"), "");
+  EXPECT_EQ(objection("viewer/window/window.cpp", "GLFW/glfw3.h"), "");
+  EXPECT_EQ(objection("viewer/window/viewer_app.cpp", "lod/streamer.h"), "");
+}
+
+TEST(Sources, NoFileIsLongerThanSevenHundredLines) {
+  for (const std::string& file : filesIn(kLayersAndTests, {".h", ".cpp", ".glsl", ".comp", ".vert", ".frag"})) {
+    std::ifstream in(test::sourceFolder() / file);
+    int lines = 0;
+    for (std::string line; std::getline(in, line);) ++lines;
+    EXPECT_LE(lines, kMaxLines) << file;
+  }
+}
+
+/// The text of the CMakeLists.txt nearest above `file`, and the file's path seen from there.
+std::pair<std::string, std::string> nearestList(const fs::path& file) {
+  fs::path folder = file.parent_path();
+  while (!fs::exists(folder / "CMakeLists.txt")) folder = folder.parent_path();
+  std::ifstream in(folder / "CMakeLists.txt");
+  return {std::string(std::istreambuf_iterator<char>(in), {}), file.lexically_relative(folder).string()};
+}
+
+/// True when `list` names the file, or builds its name in a loop: `fuzz/${name}_fuzz.cpp` with `text` among the names.
+bool isListed(const std::string& list, const std::string& file) {
+  if (list.find(file) != std::string::npos) return true;
+  static const std::regex pattern(R"re(([\w/]*)\$\{name\}([\w.]*\.cpp))re");
+  for (std::sregex_iterator at(list.begin(), list.end(), pattern), end; at != end; ++at) {
+    const std::string before = (*at)[1], after = (*at)[2];
+    if (!file.starts_with(before) || !file.ends_with(after) || file.size() <= before.size() + after.size()) continue;
+    const std::string name = file.substr(before.size(), file.size() - before.size() - after.size());
+    if (std::regex_search(list, std::regex("\\b" + name + "\\b"))) return true;
+  }
+  return false;
+}
+
+TEST(Sources, EveryCppIsListedInACMakeListsFile) {
+  for (const std::string& file : filesIn(kLayersAndTests, {".cpp"})) {
+    const auto [list, name] = nearestList(test::sourceFolder() / file);
+    EXPECT_TRUE(isListed(list, name)) << file << " is in no CMakeLists.txt";
+  }
+}
+
+TEST(Sources, TheCheckSeesAFileThatIsNotListed) {
+  const std::string list = "add_library(a one.cpp)\nforeach(name text las)\n add_executable(x fuzz/${name}_fuzz.cpp)";
+  EXPECT_TRUE(isListed(list, "one.cpp"));
+  EXPECT_TRUE(isListed(list, "fuzz/text_fuzz.cpp"));
+  EXPECT_FALSE(isListed(list, "two.cpp"));
+  EXPECT_FALSE(isListed(list, "fuzz/ply_fuzz.cpp"));
+}
+
+}  // namespace
+}  // namespace strata

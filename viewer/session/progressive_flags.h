@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <string>
+
+#include "render/progressive/progressive_rasterizer.h"
+
+namespace CLI {
+class App;
+}
+
+namespace strata {
+
+struct DrawFlags;
+
+/// The options of the command line about progressive drawing; the same for strata-bench and strata-view.
+struct ProgressiveFlags {
+  double millions = 0.0;      ///< points of the pool that a frame draws; 0: not progressive
+  double poolMillions = 0.0;  ///< 0: a quarter more than the point budget, or than all points
+};
+
+void addProgressiveFlags(CLI::App& app, ProgressiveFlags& flags);
+
+/// Throws UsageError where other options ask for what progressive drawing does not do.
+void checkProgressive(const ProgressiveFlags& flags, const std::string& backend, const DrawFlags& draw);
+
+/// For stores with `points` points together.
+ProgressiveOptions progressiveOptions(const ProgressiveFlags& flags, std::uint64_t pointBudget, std::uint64_t points);
+
+}  // namespace strata

@@ -1,0 +1,170 @@
+#include "viewer/window/output_jobs.h"
+
+#include <utility>
+
+#include "core/error.h"
+#include "io/file/text_file.h"
+
+namespace strata {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{30};  // for detail, between two frames of the progress
+constexpr double kLongestFlight = 1e5;              // seconds: a mistyped time does not play for ever
+
+std::string quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string sizeText(int width, int height) { return std::to_string(width) + " x " + std::to_string(height); }
+
+}  // namespace
+
+std::optional<View> Keeper::draw(const View& view, const Scene& scene) {
+  const KeepRequest request = drawKeepPanel(state_, view);
+  if (request.savePath) savePath(view, scene);
+  if (request.openPath) openPath();
+  if (request.record) toggleRecording(view);
+  if (request.play) togglePlaying();
+  if (request.takePicture) startPicture(view, scene);
+  if (request.takeFilm) startFilm(view, scene);
+  return request.goTo;
+}
+
+template <class Start>
+void Keeper::start(const std::string& what, Start start) {
+  stopPlaying();
+  state_.path.endRecording();
+  what_ = what;
+  began_ = std::chrono::steady_clock::now();
+  try {
+    start();
+  } catch (const Error& error) {
+    error_ = error.what();
+  }
+}
+
+void Keeper::startPicture(const View& view, const Scene& scene) {
+  PictureOrder order{state_.pictureFile, view, scene.draw, scene.selection};
+  order.view.width = state_.pictureWidth;
+  order.view.height = state_.pictureHeight;
+  if (state_.scalePoints) order.draw = scaledToPicture(scene.draw, view.height, state_.pictureHeight);
+  start(order.file + ", " + sizeText(order.view.width, order.view.height) + " pixels",
+        [&] { work_ = std::make_unique<PictureTaker>(std::move(order), scene.layers, scene.rasterizer); });
+}
+
+void Keeper::startFilm(const View& view, const Scene& scene) {
+  if (state_.path.keys().empty()) return;
+  FilmOrder order{state_.filmFile, pathOf(view), state_.filmWidth, state_.filmHeight,
+                  scaledToPicture(scene.draw, view.height, state_.filmHeight)};
+  start(order.file + ", " + std::to_string(order.path.frames()) + " frames of " + sizeText(order.width, order.height),
+        [&] { work_ = std::make_unique<FilmTaker>(std::move(order), scene.layers, scene.rasterizer); });
+}
+
+void Keeper::goOn(const Scene& scene, bool cancel) {
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
+  bool done = false;
+  double share = 0.0;
+  try {
+    if (auto* picture = std::get_if<std::unique_ptr<PictureTaker>>(&work_)) {
+      done = (*picture)->goOn(kPatience);
+      share = (*picture)->progress();
+      if (done && (*picture)->unfinishedParts() > 0)
+        error_ = state_.pictureFile + ": " + std::to_string((*picture)->unfinishedParts()) +
+                 " parts of it lack detail that could not be had";
+    } else if (auto* film = std::get_if<std::unique_ptr<FilmTaker>>(&work_)) {
+      done = (*film)->goOn(kPatience);
+      share = (*film)->progress();
+    }
+  } catch (const Error& error) {
+    error_ = error.what();
+    cancel = true;
+  }
+  cancel = drawWorkProgress(what_, share, seconds) || cancel;
+  if (done)
+    notice_ = "saved " + what_;
+  else if (cancel && error_.empty())
+    notice_ = "given up: " + what_;
+  if (done || cancel) endWork(scene);
+}
+
+void Keeper::endWork(const Scene& scene) {
+  work_ = std::monostate{};
+  scene.layers.setSelection(scene.selection);
+}
+
+CameraPath Keeper::pathOf(const View& view) const {
+  CameraPath path = state_.path.path(view.fovY, state_.fps);
+  path.speed = state_.speed;
+  return path;
+}
+
+std::optional<CameraPath> Keeper::path(const View& view) const {
+  if (state_.path.keys().empty()) return std::nullopt;
+  return pathOf(view);
+}
+
+void Keeper::setPath(const CameraPath& path) {
+  state_.path.setKeys(path.keys);
+  state_.fps = path.fps;
+  state_.speed = path.speed;
+}
+
+void Keeper::toggleRecording(const View& view) {
+  if (state_.path.recording()) {
+    state_.path.endRecording();
+    notice_ = "the path has " + std::to_string(state_.path.keys().size()) + " keys";
+  } else {
+    stopPlaying();
+    state_.path.beginRecording(view);
+    notice_ = "recording the camera, R ends it";
+  }
+}
+
+void Keeper::togglePlaying() {
+  state_.path.endRecording();
+  state_.playing = !state_.playing && !state_.path.keys().empty();
+  played_ = 0.0;
+}
+
+std::optional<View> Keeper::play(const View& view, double seconds) {
+  if (!state_.playing) return std::nullopt;
+  const CameraPath path = pathOf(view);
+  View next = viewAt(path, PathClock(path).keyTime(path.keys.front().t + played_), view.width, view.height);
+  next.nearPlane = view.nearPlane;
+  if (played_ >= path.duration()) state_.playing = false;
+  played_ += seconds;
+  return next;
+}
+
+void Keeper::savePath(const View& view, const Scene& scene) {
+  if (state_.path.keys().empty()) {
+    error_ = "there is no path yet: K sets a key, R records";
+    return;
+  }
+  if (state_.path.keys().back().t > kLongestFlight) {
+    error_ = state_.pathFile + ": the path is too long, found " + std::to_string(state_.path.keys().back().t) + " s";
+    return;
+  }
+  try {
+    writeText(state_.pathFile, cameraPathJson(pathOf(view)));
+    notice_ = "saved " + state_.pathFile;
+    state_.benchCommand = "strata-bench " + quoted(scene.firstStore) + " --path " + quoted(state_.pathFile) + " -o " +
+                          quoted(state_.pathFile + ".bench");
+  } catch (const Error& error) {
+    error_ = error.what();
+  }
+}
+
+void Keeper::openPath() {
+  try {
+    const CameraPath path = readCameraPath(state_.pathFile);
+    setPath(path);
+    notice_ = "opened " + state_.pathFile + ", " + std::to_string(path.keys.size()) + " keys";
+  } catch (const Error& error) {
+    error_ = error.what();
+  }
+}
+
+}  // namespace strata

@@ -1,0 +1,86 @@
+#include "viewer/window/tool_input.h"
+
+#include "viewer/tools/pick.h"
+
+namespace strata {
+namespace {
+
+constexpr int kClickReach = 6;  // pixels beside a point that still mean it
+
+/// The world point that is seen below the cursor, or within a click's reach of it.
+std::optional<glm::dvec3> pointUnder(const View& view, const Picture& frame, const glm::dvec2& cursor) {
+  const auto pixel = drawnPixelAt(frame, cursor, kClickReach);
+  if (!pixel) return std::nullopt;
+  const glm::dvec2 place = glm::ivec2(glm::floor(cursor)) == *pixel ? cursor : glm::dvec2(*pixel) + 0.5;
+  const float depth = frame.depth[static_cast<std::size_t>(pixel->y) * static_cast<std::size_t>(frame.width) +
+                                  static_cast<std::size_t>(pixel->x)];
+  return worldPoint(view, place, static_cast<double>(depth));
+}
+
+void moveByHand(CameraControl& control, ClipTool& clip, const WindowInput& input, const Picture& frame) {
+  const auto under = [&] { return pointUnder(control.view(), frame, input.cursor); };
+  if (input.leftPressed && clip.press(control.view(), input.cursor))
+    control.release();
+  else if (input.leftPressed)
+    control.pressLeft(input.cursor, under());
+  if (input.rightPressed) control.pressRight(input.cursor, under());
+  if (input.dragging && clip.held())
+    clip.move(control.view(), input.cursor);
+  else if (input.dragging)
+    control.move(input.cursor);
+  if (!input.dragging) control.release();
+  if (input.wheel != 0.0) control.wheel(input.wheel, input.cursor, under());
+  if (!input.fly.still()) control.fly(input.fly, input.seconds);
+}
+
+}  // namespace
+
+void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, const SeenScene& seen) {
+  control.resize(input.width, input.height);
+  control.advance(input.seconds);
+  moveByHand(control, tools.clip, input, seen.frame);
+  const View& view = control.view();
+  if (input.frameAll) control.glideTo(framed(view, seen.bounds));
+  if (input.front) control.glideTo(standardView(view, seen.bounds, StandardView::front));
+  if (input.side) control.glideTo(standardView(view, seen.bounds, StandardView::side));
+  if (input.top) control.glideTo(standardView(view, seen.bounds, StandardView::top));
+  if (input.nextMode) control.setMode(nextMode(control.mode()));
+  if (input.orthographic) control.setView(withOrthographic(view, !view.orthographic));
+  if (input.doubleClicked && !tools.measure.active())
+    if (const auto point = pointUnder(view, seen.frame, input.cursor)) control.glideTo(approached(view, *point));
+}
+
+std::string ToolHand::use(ToolsState& tools, const WindowInput& input, const View& view, const SeenScene& seen) {
+  if (input.measure) tools.measure.begin(MeasureKind::distance);
+  if (input.profile) tools.measure.begin(MeasureKind::profile);
+  if (input.clipBox) tools.clip.add(boxInView(view, seen.bounds));
+  if (input.takeBack) tools.measure.undo();
+  if (input.drop) tools.measure.cancel();
+  const bool onHandle = tools.clip.held().has_value();
+  if (!input.dragging) tools.clip.release();
+  if (input.clicked && !onHandle && seen.list != nullptr) {
+    if (const auto point = drawnPointAt(*seen.list, seen.frame, input.cursor, kClickReach)) {
+      const NodeData& node = *seen.list->items[point->item].node;
+      lookup_.ask(seen.layers.stores()[seen.layers.indexOfItem(point->item)], node.key, point->point,
+                  pointUnder(view, seen.frame, input.cursor).value_or(node.origin));
+    }
+  }
+  std::string error;
+  if (const auto answer = lookup_.take()) {
+    error = answer->error;
+    if (error.empty()) {
+      tools.picked = answer->point;
+      tools.measure.add(answer->point.position);
+    }
+  }
+  if (input.keep || (input.doubleClicked && tools.measure.active() && isOpenEnded(tools.measure.current()->kind)))
+    endMeasuring_ = true;
+  if (endMeasuring_ && !lookup_.pending()) {
+    tools.measure.finish();
+    endMeasuring_ = false;
+  }
+  tools.lookingUp = lookup_.pending();
+  return error;
+}
+
+}  // namespace strata
