@@ -6,7 +6,7 @@ foreach(file IN LISTS FILES)
   string(APPEND cases "  if (file == \"${file}\")\n    return R\"glsl(${text})glsl\";\n")
 endforeach()
 file(WRITE "${OUTPUT}" "#include \"core/error.h\"
-#include \"render/gl_objects.h\"
+#include \"render/gl/gl_objects.h\"
 
 namespace strata {
 
