@@ -45,7 +45,7 @@ const std::map<std::string_view, WingRule> kRules{
     {"render/shaders", {{}, {}}},
     {"render/gl", {{"core"}, {"POSIX", "GL", "EGL", "OSMesa"}}},
     {"render/flood", {{"core", "render", "render/plan", "render/gl", "render/shaders"}, {"TBB", "Highway", "GL"}}},
-    {"render/picture", {{"core", "render", "render/plan", "render/flood"}, {"TBB", "Highway"}}},
+    {"render/picture", {{"core", "render", "render/plan", "render/flood"}, {"POSIX", "TBB", "Highway"}}},
     {"render/cpu", {{"core", "render", "render/plan", "render/picture"}, {"TBB", "Highway"}}},
     {"render/gpu",
      {{"core", "render", "render/plan", "render/gl", "render/shaders", "render/flood", "render/picture"},
@@ -205,9 +205,9 @@ std::string findCircle(const std::map<std::string, std::set<std::string>>& graph
   std::vector<std::string> way;
   const auto visit = [&](const auto& self, const std::string& module) -> std::string {
     if (finished.contains(module)) return {};
-    const auto met = std::find(way.begin(), way.end(), module);
+    const bool closes = std::find(way.begin(), way.end(), module) != way.end();
     way.push_back(module);
-    if (met != way.end()) {
+    if (closes) {
       std::string circle;
       for (auto at = std::find(way.begin(), way.end(), module); at != way.end(); ++at)
         circle += (circle.empty() ? "" : " -> ") + *at;
