@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "render/flood/flood_search.h"
 #include "render/flood/flood_splats.h"
 #include "render/stopwatch.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/flood/flood_kernel.h"
+#include "render/flood/search_kernel.h"
 
 namespace strata {
 namespace {

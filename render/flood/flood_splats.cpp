@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "render/flood/flood_kernel.h"
+#include "render/flood/splat_kernel.h"
 
 namespace strata {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/gl/gl_objects.h"
-#include "render/gpu/compute_rasterizer.h"
+#include "render/gpu/compute_way.h"
 #include "render/picture/visibility.h"
 #include "render/shaders/shader_types.h"
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/shaders/shader_types.h"
+
 namespace strata {
 namespace {
 

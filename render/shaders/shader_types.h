@@ -18,13 +18,13 @@ using uvec4 = glm::uvec4;
 #define STRATA_MOST_CLIPS 4  // boxes and cutouts together, and as many planes
 
 // Storage blocks of drawing
-#define STRATA_BINDING_PAGE 0     // words of node data
-#define STRATA_BINDING_RECORDS 1  // BatchRecord
-#define STRATA_BINDING_PLACES 2   // BatchPlace, one a view for each record
-#define STRATA_BINDING_GRIDS 3    // GridRecord
-#define STRATA_BINDING_DEPTH 4    // per pixel: bits of the smallest depth; compute64: depth and id in 64 bits
-#define STRATA_BINDING_ID 5       // per pixel: the lowest id at that depth
-#define STRATA_BINDING_MORE 6     // compute32: candidates; compute_lock: locks; accumulate: sums or counts
+#define STRATA_BINDING_PAGE 0      // words of node data
+#define STRATA_BINDING_RECORDS 1   // BatchRecord
+#define STRATA_BINDING_PLACES 2    // BatchPlace, one a view for each record
+#define STRATA_BINDING_GRIDS 3     // GridRecord
+#define STRATA_BINDING_DEPTH 4     // per pixel: bits of the smallest depth; compute64: depth and id in 64 bits
+#define STRATA_BINDING_ID 5        // per pixel: the lowest id at that depth
+#define STRATA_BINDING_MORE 6      // compute32: candidates; compute_lock: locks; accumulate: sums or counts
 #define STRATA_BINDING_COUNTERS 7  // Counters
 // Storage blocks of planning, beside page, records and places
 #define STRATA_BINDING_PARTS 3  // DrawPart
@@ -42,23 +42,23 @@ using uvec4 = glm::uvec4;
 #define STRATA_BINDING_INSERTS 6      // PoolInsert; or PoolPiece
 
 // Storage blocks of filling holes
-#define STRATA_BINDING_FLOOD_PARAMS 0      // FloodParams
-#define STRATA_BINDING_FLOOD_SEEDS 1       // FloodSeed, one for each pixel of the half picture
-#define STRATA_BINDING_FLOOD_FROM 2        // what a round reads: layers or neighbours; splats
-#define STRATA_BINDING_FLOOD_TO 3          // what it writes
-#define STRATA_BINDING_FLOOD_LAYERS 4      // uvec4, one for each pixel of the half picture
-#define STRATA_BINDING_FLOOD_REACHES 4     // per tile: bits of the largest reach in it, then of that nearby
-#define STRATA_BINDING_FLOOD_ITEMS 5       // FloodItem
-#define STRATA_BINDING_FLOOD_NORMALS 2     // projecting: packed normals of the half picture
-#define STRATA_BINDING_FLOOD_IDS 6         // of the picture
-#define STRATA_BINDING_FLOOD_DEPTHS 7      // likewise
-#define STRATA_BINDING_FLOOD_LIMITS 3      // drawing: per pixel bits of the depth up to which splats count
-#define STRATA_BINDING_FLOOD_COLOURS 4     // drawing: of the picture
-#define STRATA_BINDING_FLOOD_SUMS 5        // drawing: FloodSum
+#define STRATA_BINDING_FLOOD_PARAMS 0   // FloodParams
+#define STRATA_BINDING_FLOOD_SEEDS 1    // FloodSeed, one for each pixel of the half picture
+#define STRATA_BINDING_FLOOD_FROM 2     // what a round reads: layers or neighbours; splats
+#define STRATA_BINDING_FLOOD_TO 3       // what it writes
+#define STRATA_BINDING_FLOOD_LAYERS 4   // uvec4, one for each pixel of the half picture
+#define STRATA_BINDING_FLOOD_REACHES 4  // per tile: bits of the largest reach in it, then of that nearby
+#define STRATA_BINDING_FLOOD_ITEMS 5    // FloodItem
+#define STRATA_BINDING_FLOOD_NORMALS 2  // projecting: packed normals of the half picture
+#define STRATA_BINDING_FLOOD_IDS 6      // of the picture
+#define STRATA_BINDING_FLOOD_DEPTHS 7   // likewise
+#define STRATA_BINDING_FLOOD_LIMITS 3   // drawing: per pixel bits of the depth up to which splats count
+#define STRATA_BINDING_FLOOD_COLOURS 4  // drawing: of the picture
+#define STRATA_BINDING_FLOOD_SUMS 5     // drawing: FloodSum
 
-#define STRATA_UNIFORM_VIEWPORT 0       // per view: half the picture's width and height, width and height of the image
-#define STRATA_UNIFORM_LENS 4           // per view: near plane, 1 for perspective or 0, corner of the image in the picture
-#define STRATA_UNIFORM_PIXELS 8         // per view: first pixel in the buffers, first row and end row that they hold
+#define STRATA_UNIFORM_VIEWPORT 0  // per view: half the picture's width and height, width and height of the image
+#define STRATA_UNIFORM_LENS 4      // per view: near plane, 1 for perspective or 0, corner of the image in the picture
+#define STRATA_UNIFORM_PIXELS 8    // per view: first pixel in the buffers, first row and end row that they hold
 #define STRATA_UNIFORM_FIRST_RECORD 12  // of the first work-group
 #define STRATA_UNIFORM_PASS 13          // compute32: 0 is the depth pass, 1 the index pass
 #define STRATA_UNIFORM_CLASSES 14       // 8 words of bits: the classes drawn
@@ -72,13 +72,13 @@ using uvec4 = glm::uvec4;
 
 #define STRATA_ATTRIBUTE_RECORD 0
 
-#define STRATA_CLIPPED 1  // flag of BatchPlace: its points are to be tested
+#define STRATA_CLIPPED 1     // flag of BatchPlace: its points are to be tested
 #define STRATA_BOX_WORDS 16  // of BatchBox
 
 /// One batch to draw.
 struct BatchRecord {
-  uint firstWord;       // of plane 0 in the page
-  uint planeStride;     // words from one plane to the next; a multiple of 4
+  uint firstWord;    // of plane 0 in the page
+  uint planeStride;  // words from one plane to the next; a multiple of 4
   uint pointCount;
   uint firstId;
   uint firstClass;      // word of the page with the first point's class in byte firstWord % 4; 0: no classes
@@ -121,20 +121,20 @@ struct PoolPiece {
   uint shifts;   // of BatchPlace: an axis, a byte each, 128 more
   uint count;    // points that are drawn, the first ones
   uint flags;
-  uint first;    // index of the first point, before shuffling
+  uint first;  // index of the first point, before shuffling
 };
 
 /// Points on their way into the pool.
 struct PoolInsert {
-  uint first;   // index in the pool, before shuffling
+  uint first;  // index in the pool, before shuffling
   uint count;
   uint staged;  // first in the stream buffer
   uint padding;
 };
 
 #define STRATA_FLOOD_TILE 16  // side of the squares that know how far a reach nearby goes, pixels of the half picture
-#define STRATA_FLOOD_WEIGHT 1023.0     // what the weight 1 is in a FloodSum
-#define STRATA_FLOOD_DEPTHS 16384.0    // steps of depth in a FloodSum, from the limit to the eye
+#define STRATA_FLOOD_WEIGHT 1023.0   // what the weight 1 is in a FloodSum
+#define STRATA_FLOOD_DEPTHS 16384.0  // steps of depth in a FloodSum, from the limit to the eye
 
 // Flags of FloodParams
 #define STRATA_FLOOD_PERSPECTIVE 1
@@ -146,13 +146,13 @@ struct PoolInsert {
 
 /// FloodSettings, FloodLens and sizes.
 struct FloodParams {
-  int width, height;          // of the picture
+  int width, height;  // of the picture
   int halfWidth, halfHeight;
   int tileColumns, tileRows;
   uint flags, items;
-  float perPixel, middleX, middleY, farthestReach;  // the last one in pixels of the half picture
+  float perPixel, middleX, middleY, farthestReach;       // the last one in pixels of the half picture
   float angle, continuity, relativeRadius, mostReaches;  // the last one: largest radius of next pixels, in reaches
-  uint indexBits, padding[3];  // that an index into the half picture has
+  uint indexBits, padding[3];                            // that an index into the half picture has
 };
 
 /// One item of the list.
@@ -196,10 +196,10 @@ struct Counters {
 
 /// One batch as it lies in a page, before the planes of its part.
 struct BatchBox {
-  uint boxMin[6];       // three doubles: metres from the node's origin
-  int step[3];          // grid steps from the corner of the node's first batch
-  uint bits;            // an axis, a byte each
-  uint firstPoint;      // within the node
+  uint boxMin[6];   // three doubles: metres from the node's origin
+  int step[3];      // grid steps from the corner of the node's first batch
+  uint bits;        // an axis, a byte each
+  uint firstPoint;  // within the node
   uint pointCount;
   uint firstCandidate;  // word, from the part's first
   uint padding[3];
@@ -207,16 +207,16 @@ struct BatchBox {
 
 /// Batches of one item that lie in one page.
 struct DrawPart {
-  dvec4 origin;                     // NodeData::origin
-  dvec4 step;                       // of the grid, metres
-  ivec4 first[STRATA_MOST_VIEWS];   // grid steps from the eye's cell to the node's first corner; w: grid, -1: not seen
-  uint firstBox, boxCount;          // in the page: words, batches
-  uint firstWord, planeStride;      // of plane 0
-  uint firstPoint, prefix;          // within the node: the part's first, the end of what is drawn
-  uint firstId, planes;             // of the node's first point; planes loaded
-  uint firstClass, firstColour;     // words of the part's first point; 0: none
+  dvec4 origin;                    // NodeData::origin
+  dvec4 step;                      // of the grid, metres
+  ivec4 first[STRATA_MOST_VIEWS];  // grid steps from the eye's cell to the node's first corner; w: grid, -1: not seen
+  uint firstBox, boxCount;         // in the page: words, batches
+  uint firstWord, planeStride;     // of plane 0
+  uint firstPoint, prefix;         // within the node: the part's first, the end of what is drawn
+  uint firstId, planes;            // of the node's first point; planes loaded
+  uint firstClass, firstColour;    // words of the part's first point; 0: none
   uint firstCandidate, run;
-  uint firstRecord, padding[3];     // of the run
+  uint firstRecord, padding[3];  // of the run
 };
 
 /// A view as planning needs it; everything is relative to the eye. See ViewConstants.
@@ -238,7 +238,8 @@ struct DispatchRecord {
 static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchPlace) == 32 && sizeof(GridRecord) == 240);
 static_assert(sizeof(BatchBox) == 4 * STRATA_BOX_WORDS && sizeof(DrawPart) == 192 && sizeof(ViewRecord) == 640);
 static_assert(sizeof(PoolPiece) == 32 && sizeof(PoolInsert) == 16);
-static_assert(sizeof(FloodParams) == 80 && sizeof(FloodItem) == 8 && sizeof(FloodSeed) == 16 && sizeof(FloodShape) == 64);
+static_assert(sizeof(FloodParams) == 80 && sizeof(FloodItem) == 8 && sizeof(FloodSeed) == 16 &&
+              sizeof(FloodShape) == 64);
 static_assert(sizeof(FloodSum) == 24);
 static_assert(sizeof(DispatchRecord) == 12 && sizeof(Counters) == 32);
 }  // namespace strata::shader

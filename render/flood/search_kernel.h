@@ -1,12 +1,13 @@
 #pragma once
-#include "render/flood/flood_search.h"
-#include "render/flood/flood_splats.h"
+#include <cstddef>
+#include <vector>
+
+#include "render/flood/flood_neighbourhood.h"
+#include "render/flood/flood_vectors.h"
 
 namespace strata {
 
 // The inner loops of jump flooding, by the best instruction set of the machine.
-
-inline constexpr int kFloodTile = 16;  ///< pixels of a row that are searched at once: a multiple of any vector's
 
 /// FloodLayers while they are searched, plane by plane. Rows have a margin to both sides that holds none, so that jumps
 /// need not ask whether they leave the picture.
@@ -45,19 +46,5 @@ struct NeighbourBounds {
 /// has room for kFloodTile more. Returns how many.
 std::size_t keepClose(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
                       const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distance2);
-
-/// Some rows of the picture while splats are drawn. Rows are `stride` long, at least width + kFloodTile.
-struct FloodStrip {
-  int top, bottom;  ///< rows [top, bottom)
-  std::size_t stride;
-  float* limit;                                ///< how far away splats may be that count; first infinite
-  float *red, *green, *blue, *depth, *weight;  ///< sums
-  float* heaviest;                             ///< largest weight
-  FloodPixel* from;                            ///< the seed that had it
-};
-/// Lowers `limit` to what the splat and what lies just behind it hide.
-void drawSplatDepth(const FloodSplat& splat, const FloodStrip& strip);
-/// Adds `colour` (R | G<<8 | B<<16), by the weight exp(-d^2), where the splat is within the limit.
-void blendSplat(const FloodSplat& splat, std::uint32_t colour, const FloodStrip& strip);
 
 }  // namespace strata
