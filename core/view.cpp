@@ -6,21 +6,21 @@
 namespace strata {
 
 View wholePicture(const View& view) {
-  if (view.part == PictureTile{}) return view;
+  if (view.tile == PictureTile{}) return view;
   View whole = view;
-  whole.width = view.part.pictureWidth;
-  whole.height = view.part.pictureHeight;
-  whole.part = {};
+  whole.width = view.tile.pictureWidth;
+  whole.height = view.tile.pictureHeight;
+  whole.tile = {};
   return whole;
 }
 
-View partOfPicture(const View& view, int left, int top, int width, int height) {
+View tileOfPicture(const View& view, int left, int top, int width, int height) {
   const View whole = wholePicture(view);
-  View part = whole;
-  part.width = width;
-  part.height = height;
-  part.part = {whole.width, whole.height, view.part.left + left, view.part.top + top};
-  return part;
+  View tile = whole;
+  tile.width = width;
+  tile.height = height;
+  tile.tile = {whole.width, whole.height, view.tile.left + left, view.tile.top + top};
+  return tile;
 }
 
 ViewBasis viewBasis(const View& view) {
@@ -37,8 +37,8 @@ ViewBasis viewBasis(const View& view) {
 Projection projection(const View& view) {
   const ViewBasis basis = viewBasis(view);
   const View whole = wholePicture(view);
-  const double halfWidth = 0.5 * whole.width - view.part.left;  // from the image's corner to the view's axis
-  const double halfHeight = 0.5 * whole.height - view.part.top;
+  const double halfWidth = 0.5 * whole.width - view.tile.left;  // from the image's corner to the view's axis
+  const double halfHeight = 0.5 * whole.height - view.tile.top;
   Projection p;
   p.eye = view.eye;
   p.rowDepth = glm::dvec4(basis.forward, 0.0);

@@ -6,10 +6,10 @@
 
 namespace strata {
 
-/// Where an image lies in the larger picture that it is a part of; pixels. All zero: the image is the whole picture.
+/// Where an image lies in the larger picture that it is a tile of; pixels. All zero: the image is the whole picture.
 struct PictureTile {
   int pictureWidth = 0, pictureHeight = 0;
-  int left = 0, top = 0;  ///< of the image's first pixel
+  int left = 0, top = 0;  ///< of the image's first pixel in the picture
 
   bool operator==(const PictureTile&) const = default;
 };
@@ -26,15 +26,16 @@ struct View {
   double nearPlane = 0.01;          ///< metres; points nearer than this are not drawn. There is no far plane
   int width = 1920;                 ///< of the image
   int height = 1080;
-  PictureTile part;  ///< fovY and orthographicHeight are those of the whole picture
+  PictureTile tile;  ///< fovY and orthographicHeight are those of the whole picture
 
   bool operator==(const View&) const = default;
 };
 
-/// The view of the whole picture that `view` shows a part of, and back: `part` of the picture of `view`, from pixel
-/// (left, top) on. Drawn, the part is that piece of the whole picture, pixel for pixel.
+/// The view of the whole picture that `view` shows a tile of; `view` itself where it shows all of it.
 View wholePicture(const View& view);
-View partOfPicture(const View& view, int left, int top, int width, int height);
+/// The view of a tile of width x height pixels whose first pixel is (left, top) of `view`. A tile shows what the whole
+/// picture shows in its place, pixel for pixel.
+View tileOfPicture(const View& view, int left, int top, int width, int height);
 
 /// Orthonormal camera frame. Degenerate input (eye == target, up along the view) falls back to a sane frame.
 struct ViewBasis {

@@ -58,8 +58,8 @@ FloodLens floodLens(const View& view) {
   View whole = wholePicture(view);
   whole.nearPlane = 0.0;  // which would bound the depth below
   return {!view.orthographic, static_cast<float>(1.0 / pixelsAt(whole, 1.0, 1.0)),
-          0.5f * static_cast<float>(whole.width) - static_cast<float>(view.part.left),
-          0.5f * static_cast<float>(whole.height) - static_cast<float>(view.part.top)};
+          0.5f * static_cast<float>(whole.width) - static_cast<float>(view.tile.left),
+          0.5f * static_cast<float>(whole.height) - static_cast<float>(view.tile.top)};
 }
 
 float drawnSpacing(const NodeData& node, std::uint32_t drawn) {

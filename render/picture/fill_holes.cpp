@@ -78,8 +78,8 @@ FillSizes::FillSizes(const DrawOptions& options, const View& view)
       gaze_(options.gaze.on),
       atX_(options.gaze.at.x * static_cast<float>(wholePicture(view).width)),
       atY_(options.gaze.at.y * static_cast<float>(wholePicture(view).height)),
-      left_(view.part.left),
-      top_(view.part.top),
+      left_(view.tile.left),
+      top_(view.tile.top),
       third_(static_cast<float>(std::max(wholePicture(view).height, 1)) / 3.0f) {}
 
 int FillSizes::at(int x, int y) const {

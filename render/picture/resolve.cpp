@@ -125,7 +125,7 @@ void finishRow(const VisibilityBuffer& buffer, const View& view, const DrawOptio
                const std::uint32_t* colours, const std::uint32_t* ids, Picture& frame) {
   const auto width = static_cast<std::size_t>(buffer.width);
   const std::uint32_t background =
-      backgroundColour(options, view.part.top + static_cast<int>(y), wholePicture(view).height);
+      backgroundColour(options, view.tile.top + static_cast<int>(y), wholePicture(view).height);
   for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
     const std::uint32_t from = pixelId(buffer.pixels[i]);
     frame.depth[i] = pixelDepth(buffer.pixels[i]);

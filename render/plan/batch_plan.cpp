@@ -51,7 +51,7 @@ bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
   const glm::dvec2 place(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
   const View whole = wholePicture(c.view);
   const glm::dvec2 at =
-      glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.part.left, c.view.part.top);
+      glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.tile.left, c.view.tile.top);
   const double away = glm::distance(place, at) / std::max(whole.height, 1);
   const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
   const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;

@@ -5,27 +5,28 @@
 
 namespace strata {
 
-int marginOf(const DrawOptions& options) {
+int tileMargin(const DrawOptions& options) {
   const int largest = options.pointMetres > 0.0f ? DrawOptions::kLargestPoint
                                                  : std::clamp(options.pointSize, 1, DrawOptions::kLargestPoint);
   const int fill = options.gaze.on ? DrawOptions::kLargestFill : std::clamp(options.fill, 1, DrawOptions::kLargestFill);
-  // Lighting looks one point's width away, at what was filled, out of what squares cover; one more for rounding.
+  // Lighting looks one point's width away from pixels that may have been filled with pixels that a large point covers.
+  // One more pixel is for rounding.
   return (options.edl ? largest : 0) + fill / 2 + largest / 2 + 1;
 }
 
-View withMargin(const View& part, int margin) {
-  const View whole = wholePicture(part);
-  const int left = std::max(part.part.left - margin, 0), top = std::max(part.part.top - margin, 0);
-  const int right = std::min(part.part.left + part.width + margin, whole.width);
-  const int bottom = std::min(part.part.top + part.height + margin, whole.height);
-  return partOfPicture(whole, left, top, right - left, bottom - top);
+View withMargin(const View& tile, int margin) {
+  const View whole = wholePicture(tile);
+  const int left = std::max(tile.tile.left - margin, 0), top = std::max(tile.tile.top - margin, 0);
+  const int right = std::min(tile.tile.left + tile.width + margin, whole.width);
+  const int bottom = std::min(tile.tile.top + tile.height + margin, whole.height);
+  return tileOfPicture(whole, left, top, right - left, bottom - top);
 }
 
-void copyPart(const Picture& frame, const View& drawn, const View& part, Image& image, int left, int top) {
-  const int fromLeft = part.part.left - drawn.part.left, fromTop = part.part.top - drawn.part.top;
-  for (int y = 0; y < part.height; ++y)
-    std::copy_n(frame.colour.begin() + static_cast<std::ptrdiff_t>(fromTop + y) * frame.width + fromLeft, part.width,
-                image.pixels.begin() + static_cast<std::ptrdiff_t>(top + y) * image.width + left);
+void copyTile(const Picture& picture, const View& drawn, const View& tile, Image& image, const glm::ivec2& to) {
+  const int fromLeft = tile.tile.left - drawn.tile.left, fromTop = tile.tile.top - drawn.tile.top;
+  for (int y = 0; y < tile.height; ++y)
+    std::copy_n(picture.colour.begin() + static_cast<std::ptrdiff_t>(fromTop + y) * picture.width + fromLeft,
+                tile.width, image.pixels.begin() + static_cast<std::ptrdiff_t>(to.y + y) * image.width + to.x);
 }
 
 }  // namespace strata

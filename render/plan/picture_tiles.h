@@ -1,4 +1,6 @@
 #pragma once
+#include <glm/vec2.hpp>
+
 #include "core/draw_options.h"
 #include "core/image.h"
 #include "core/picture.h"
@@ -6,19 +8,19 @@
 
 namespace strata {
 
-// A picture too large for one frame is drawn in parts (PictureTile). Points wider than a pixel, hole filling and
-// eye-dome lighting look beyond a part's edge, so each is drawn with a margin, which is then cut off: what is left is
-// the whole picture's, pixel for pixel. Two ways of drawing go by the whole picture and cannot be parted: overdraw,
-// whose colours are shares of the largest count, and a point budget that is reached.
+// A picture too large to be drawn at once is drawn in tiles (PictureTile). Large points, hole filling and eye-dome
+// lighting look beyond the edge of a tile. Each tile is therefore drawn with a margin, which is cut off afterwards; the
+// rest equals the whole picture, pixel for pixel. Two things depend on the whole picture and cannot be drawn in tiles:
+// overdraw, whose colours are relative to the largest count, and a view that exceeds its point budget.
 
-/// Pixels beside a part that its own pixels may depend on.
-int marginOf(const DrawOptions& options);
+/// How many pixels beyond a tile's edge its own pixels may depend on.
+int tileMargin(const DrawOptions& options);
 
-/// `part` with as much of its picture around it, as far as the picture goes.
-View withMargin(const View& part, int margin);
+/// The view `tile` with `margin` pixels of its picture more on every side, as far as the picture goes.
+View withMargin(const View& tile, int margin);
 
-/// The piece of `frame`, drawn from `drawn`, that `part` shows, into `image` at (left, top). Both views are of one
-/// picture, and `part` lies in `drawn`.
-void copyPart(const Picture& frame, const View& drawn, const View& part, Image& image, int left, int top);
+/// Copies the colours of `tile` out of `picture`, which was drawn from the view `drawn`, into `image` from the pixel
+/// `to` on. Both views are tiles of one picture, and `tile` lies inside `drawn`.
+void copyTile(const Picture& picture, const View& drawn, const View& tile, Image& image, const glm::ivec2& to);
 
 }  // namespace strata

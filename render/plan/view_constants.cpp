@@ -37,8 +37,8 @@ Viewport viewport(const ViewConstants& c) {
   const View whole = wholePicture(c.view);
   v.halfWidth = 0.5f * static_cast<float>(whole.width);
   v.halfHeight = 0.5f * static_cast<float>(whole.height);
-  v.left = static_cast<float>(c.view.part.left);
-  v.top = static_cast<float>(c.view.part.top);
+  v.left = static_cast<float>(c.view.tile.left);
+  v.top = static_cast<float>(c.view.tile.top);
   v.nearDepth = std::max(static_cast<float>(c.view.nearPlane), std::numeric_limits<float>::min());
   v.perspective = !c.view.orthographic;
   return v;

@@ -33,7 +33,7 @@ std::uint64_t pictureKey(const View& view, const DrawOptions& options, const Dra
   };
   mix(view.width);
   mix(view.height);
-  mix(view.part);
+  mix(view.tile);
   mix(view.nearPlane);
   mix(view.orthographic);
   for (const GridTransform& grid : plan.grids) {

@@ -84,7 +84,7 @@ TEST_F(Progressive, OfAStillCameraBecomesExactlyThePlainPicture) {
 TEST_F(Progressive, DrawsAPartOfALargerPicture) {
   STRATA_CREATE({20'000, 30'000, 100'000});
   const RenderList list = test::makeTown(kUtm, 200.0, 60'000, 16);
-  const View view = partOfPicture(viewOfBox(test::boundsOf(list), kDirection, 600, 500, 1.0), 130, 90, 320, 251);
+  const View view = tileOfPicture(viewOfBox(test::boundsOf(list), kDirection, 600, 500, 1.0), 130, 90, 320, 251);
   converge(list, view);
   expectPlainPicture(list, view);
   EXPECT_GT(covered(frame_), 10'000u);

@@ -39,7 +39,7 @@ DrawOptions scaledToPicture(const DrawOptions& draw, int fromHeight, int toHeigh
 
 PictureTaker::PictureTaker(PictureOrder order, Layers& layers, Rasterizer& rasterizer)
     : order_(std::move(order)),
-      margin_(marginOf(order_.draw)),
+      margin_(tileMargin(order_.draw)),
       layers_(layers),
       rasterizer_(rasterizer),
       png_(order_.file, order_.view.width, order_.view.height) {
@@ -81,7 +81,7 @@ double PictureTaker::progress() const {
 bool PictureTaker::goOn(std::chrono::milliseconds patience) {
   const auto now = std::chrono::steady_clock::now();
   const Part part = open_.back();
-  const View view = partOfPicture(order_.view, part.left, part.top, part.width, part.height);
+  const View view = tileOfPicture(order_.view, part.left, part.top, part.width, part.height);
   const View drawn = withMargin(view, margin_);
   if (!asked_) {
     overCapacityBefore_ = layers_.stats().overCapacity;
@@ -105,7 +105,7 @@ bool PictureTaker::goOn(std::chrono::milliseconds patience) {
     return false;
   }
   if (!fits || !complete) ++unfinished_;
-  copyPart(frame_, drawn, view, row_, part.left, part.top - rowTop_);
+  copyTile(frame_, drawn, view, row_, {part.left, part.top - rowTop_});
   drawnPixels_ += static_cast<std::uint64_t>(part.width) * static_cast<std::uint64_t>(part.height);
   if (!open_.empty()) return false;
 

@@ -1,4 +1,4 @@
-#include "tests/support/parted_picture.h"
+#include "tests/support/tiled_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ std::vector<std::pair<std::string, DrawOptions>> effectsOnPictures(const RenderL
   return effects;
 }
 
-Image drawnInParts(Rasterizer& rasterizer, const RenderList& list, const View& view, const DrawOptions& options,
+Image drawnInTiles(Rasterizer& rasterizer, const RenderList& list, const View& view, const DrawOptions& options,
                    int margin, std::uint32_t seed) {
   std::mt19937 random(seed);
   const auto cuts = [&](int length) {
@@ -54,18 +54,18 @@ Image drawnInParts(Rasterizer& rasterizer, const RenderList& list, const View& v
   Image image{view.width, view.height, {}};
   image.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
   const std::vector<int> columns = cuts(view.width), rows = cuts(view.height);
-  Picture frame;
+  Picture picture;
   for (std::size_t r = 0; r + 1 < rows.size(); ++r)
     for (std::size_t c = 0; c + 1 < columns.size(); ++c) {
-      const View part = partOfPicture(view, columns[c], rows[r], columns[c + 1] - columns[c], rows[r + 1] - rows[r]);
-      const View drawn = withMargin(part, margin);
-      rasterizer.draw(list, drawn, options, frame);
-      copyPart(frame, drawn, part, image, columns[c], rows[r]);
+      const View tile = tileOfPicture(view, columns[c], rows[r], columns[c + 1] - columns[c], rows[r + 1] - rows[r]);
+      const View drawn = withMargin(tile, margin);
+      rasterizer.draw(list, drawn, options, picture);
+      copyTile(picture, drawn, tile, image, {columns[c], rows[r]});
     }
   return image;
 }
 
-void expectPartsMakeTheWhole(Rasterizer& rasterizer, int views) {
+void expectTilesMakeTheWhole(Rasterizer& rasterizer, int views) {
   const RenderList list = makeTown({630000.0, 4850000.0, 120.0}, 120.0, 60000, 7, 4);
   std::uint32_t seed = 1;
   for (View view : viewsAround(boundsOf(list), views, 333, 251)) {
@@ -74,9 +74,9 @@ void expectPartsMakeTheWhole(Rasterizer& rasterizer, int views) {
     for (const auto& [name, options] : effectsOnPictures(list)) {
       Picture whole;
       rasterizer.draw(list, view, options, whole);
-      const Image parts = drawnInParts(rasterizer, list, view, options, marginOf(options), ++seed);
+      const Image tiles = drawnInTiles(rasterizer, list, view, options, tileMargin(options), ++seed);
       std::size_t different = 0;
-      for (std::size_t i = 0; i < parts.pixels.size(); ++i) different += parts.pixels[i] != whole.colour[i] ? 1 : 0;
+      for (std::size_t i = 0; i < tiles.pixels.size(); ++i) different += tiles.pixels[i] != whole.colour[i] ? 1 : 0;
       EXPECT_EQ(different, 0u) << rasterizer.name() << ", " << name << ", seed " << seed;
     }
   }
