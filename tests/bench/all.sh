@@ -1,34 +1,45 @@
 #!/usr/bin/env bash
-# Measures all of docs/benchmarks.md and writes the tables between its marks. On two idle cores the default sizes take
-# about 20 minutes and 12 GB of disk.
-# usage: tests/bench/all.sh [-b BUILD] [-d FOLDER] [-o PAGE] [-q] [SECTION...]
-#   BUILD    folder with bin/ and tests/ (default: build/release)     FOLDER  scratch, what is in it is used again
-#            (default: a new one under TMPDIR)                        PAGE    default: docs/benchmarks.md
+# Measures the figures of docs/benchmarks.md. The tables of a section go between the marks of its own page,
+# docs/benchmarks/SECTION.md, and its main figures between those of docs/benchmarks.md, which has `machine` and `targets`
+# whole. On two idle cores the default sizes take about 20 minutes and 12 GB of disk.
+# usage: tests/bench/all.sh [-b BUILD] [-d FOLDER] [-o DOCS] [-q] [SECTION...]
+#   BUILD    the folder with bin/ and tests/ (default: build/release)
+#   FOLDER   scratch; what an earlier call left in it is used again (default: a new one under TMPDIR)
+#   DOCS     the folder with benchmarks.md and benchmarks/ (default: docs)
 #   -q       quick: everything a hundredth, only to see that it works
-#   SECTION  machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights
-#            real filling largest larger targets; default: all but larger and largest
-# Sizes, from the environment: CONVERT="10M 50M", LARGER="200M 500M:1G" (points[:--memory]), CITY=50e6 and ROOM=20e6 (points
-# of the stores that are flown through), LARGEST=500e6, RASTER=10 and PROGRESSIVE=10 (million points), SCALE=0.02 (of the papers' numbers),
-# KANZOK_SCALE=SCALE, REPEAT=3 (flights), VIEWS=30 (indoors), FLOWN=3e6 (points of the room that is flown through),
-# FILLED=16e6 (points of the city whose holes are filled).
-# RED_ROCKS: the real scan, a LAZ file; default: ../shared/data/laz/large/red_rocks_4.0M.laz
-# Disk: larger takes 48 bytes a point of one scan at a time; what earlier calls measured into the same FOLDER stays in its
-# tables, so it may be run scan by scan. largest takes 21 bytes a point: 1e9 points fit 25 GB, 2e9 fit 45 GB.
+#   SECTION  machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther
+#            flights real filling largest larger targets; default: all but larger and largest
+# Sizes, from the environment:
+#   CONVERT="10M 50M"           points of the conversions
+#   LARGER="200M 500M:1G"       the same of section larger, POINTS[:--memory]
+#   CITY=50e6 ROOM=20e6         points of the stores that are flown through
+#   LARGEST=500e6               points of the largest city
+#   RASTER=10 PROGRESSIVE=10    million points to draw
+#   SCALE=0.02                  share of the papers' numbers of points; KANZOK_SCALE=SCALE
+#   REPEAT=3                    flights of each path
+#   VIEWS=30                    views indoors
+#   FLOWN=3e6                   points of the room that is flown through
+#   FILLED=16e6                 points of the city whose holes are filled
+#   RED_ROCKS=FILE.laz          the real scan; default: ../shared/data/laz/large/red_rocks_4.0M.laz
+# Disk: larger takes 48 bytes a point of one scan at a time; figures that earlier calls measured into the same FOLDER stay
+# in its tables, so it may be run scan by scan. largest takes 21 bytes a point: 1e9 points fit 25 GB, 2e9 fit 45 GB.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
-build=$root/build/release folder='' page=$root/docs/benchmarks.md quick=0
+build=$root/build/release folder='' docs=$root/docs quick=0
 while getopts b:d:o:q option; do
   case $option in
     b) build=$(realpath "$OPTARG") ;;
     d) folder=$OPTARG ;;
-    o) page=$OPTARG ;;
+    o) docs=$OPTARG ;;
     q) quick=1 ;;
     *) exit 2 ;;
   esac
 done
 shift $((OPTIND - 1))
 sections=("$@")
-[ ${#sections[@]} -gt 0 ] || sections=(machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights real filling targets)
+[ ${#sections[@]} -gt 0 ] ||
+  sections=(machine conversion store selection loading streaming rasterizers progressive kanzok schuetz guenther flights
+    real filling targets)
 if [ $quick = 1 ]; then
   : "${FILLED:=200e3}" "${CONVERT:=100k}" "${LARGER:=200k 300k:512M}" "${CITY:=300e3}" "${ROOM:=200e3}" "${LARGEST:=1e6}" "${RASTER:=1}" "${SCALE:=0.0005}" "${REPEAT:=1}" "${VIEWS:=3}" "${FLOWN:=100e3}" "${NODES:=20000}"
 fi
@@ -198,13 +209,13 @@ filling() {
 }
 targets() { table targets "$folder/sections"; }
 
-# Several sections: each by itself, so that one that fails leaves its place in the page as it was and the others go on.
+# Several sections: each in a run of its own, so that one that fails leaves its pages as they were and the others go on.
 if [ ${#sections[@]} -gt 1 ]; then
   failed=()
   quickly=()
   [ $quick = 0 ] || quickly=(-q)
   for section in "${sections[@]}"; do
-    "$0" -b "$build" -d "$folder" -o "$page" "${quickly[@]}" "$section" || failed+=("$section")
+    "$0" -b "$build" -d "$folder" -o "$docs" "${quickly[@]}" "$section" || failed+=("$section")
   done
   [ ${#failed[@]} = 0 ] || { echo "error: not measured: ${failed[*]}" >&2; exit 1; }
   exit 0
@@ -214,7 +225,17 @@ note "$section"
 start=$SECONDS
 stamp=$(table stamp "$root")
 "$section" >"$folder/sections/$section.part"
-[ "$section" = machine ] || [ "$section" = targets ] || printf '\n%s\n' "$stamp" >>"$folder/sections/$section.part"
-mv "$folder/sections/$section.part" "$folder/sections/$section.md"
-table put "$page" "$section" "$folder/sections/$section.md"
+case $section in
+  machine | targets)
+    mv "$folder/sections/$section.part" "$folder/sections/$section.md"
+    table put "$docs/benchmarks.md" "$section" "$folder/sections/$section.md"
+    ;;
+  *)
+    printf '\n%s\n' "$stamp" >>"$folder/sections/$section.part"
+    mv "$folder/sections/$section.part" "$folder/sections/$section.md"
+    table headline "$section" "$folder/sections/$section.md" >"$folder/sections/$section.headline"
+    table put "$docs/benchmarks/$section.md" "$section" "$folder/sections/$section.md"
+    table put "$docs/benchmarks.md" "$section" "$folder/sections/$section.headline"
+    ;;
+esac
 note "$section took $((SECONDS - start)) s"

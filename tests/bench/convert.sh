@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes the conversion tables of docs/benchmarks.md: a synthetic city as LAS 1.2 format 2 (26 bytes a point) and LAZ,
+# Makes the conversion tables of docs/benchmarks/conversion.md: a synthetic city as LAS 1.2 format 2 (26 bytes a point) and LAZ,
 # converted with default options. Prints Markdown; what it is doing goes to stderr. Inputs are made where FOLDER has
 # none, one at a time, and those that were made are deleted as soon as they are measured.
 # usage: tests/bench/convert.sh [-d FOLDER] [-b BUILD] [-r RUNS] [-s RESULTS] [-n] [-k] [POINTS[:MEMORY]...]

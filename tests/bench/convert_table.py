@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints the tables of docs/benchmarks.md from what tests/bench/convert.sh measured: RESULTS/SIZE:MEMORY.ENDING, one
+"""Prints the tables of docs/benchmarks/conversion.md from what tests/bench/convert.sh measured: RESULTS/SIZE:MEMORY.ENDING, one
 line of JSON a run; SIZE.decode, what LASzip alone took; pcl_SIZE, PCL's converter.
 usage: convert_table.py RESULTS"""
 import json

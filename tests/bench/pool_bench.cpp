@@ -1,5 +1,5 @@
-// What the point pool is made of, without OpenGL, as tables of docs/benchmarks.md: the permutations (Rumpler
-// 2019, 4.2.2) and the memory that fragments (4.1.5). --small: a hundredth.
+// What the point pool is made of, without OpenGL, as tables of docs/benchmarks/progressive.md: the permutations
+// (Rumpler 2019, 4.2.2) and the memory that fragments (4.1.5). --small: a hundredth.
 #include <algorithm>
 #include <bit>
 #include <cmath>

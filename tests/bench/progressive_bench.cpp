@@ -1,6 +1,6 @@
 // Progressive drawing: Rumpler 2019, 4.1, with a made cloud of buildings at 1280 x 720, as tables of
-// docs/benchmarks.md. The camera moves a little in each frame that is timed, so that no frame finds its picture
-// finished.
+// docs/benchmarks/progressive.md. The camera moves a little in each frame that is timed, so that no frame finds its
+// picture finished.
 //
 // progressive_bench [--small | --points MILLION] [--pictures FOLDER]
 //

@@ -1,5 +1,5 @@
 // Progressive drawing along a flight over a streamed store, beside the plain way of the same nodes (compute32): a row
-// of docs/benchmarks.md for each. Each frame goes on by 1/fps of the path, however long it took.
+// of docs/benchmarks/progressive.md for each. Each frame goes on by 1/fps of the path, however long it took.
 //
 // progressive_flight STORE PATH.json [--frames N] [--size WIDTHxHEIGHT] [--pool MILLION] [--points N,N,...]
 //                    [--pictures FOLDER]

@@ -1,5 +1,5 @@
-// What streaming costs and saves, as tables of docs/benchmarks.md (Table 3 of Kanzok 2015: strata-bench --suite
-// kanzok):
+// What streaming costs and saves, as tables of docs/benchmarks/streaming.md (Table 3 of Kanzok 2015: strata-bench
+// --suite kanzok):
 //
 // streaming_bench indoors STORE [VIEWS]    with and without occlusion: random views from inside a store of
 // synthetic:room

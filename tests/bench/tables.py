@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Tables of docs/benchmarks.md out of what the programs print, for tests/bench/all.sh.
-usage: tables.py put PAGE SECTION FILE | machine FOLDER ROOT | benchmark COUNTER... <JSON | planes NAME INFO.json...
+"""Makes the tables of docs/benchmarks.md and docs/benchmarks/ from what the programs print, for tests/bench/all.sh.
+usage: tables.py put PAGE SECTION FILE | headline SECTION FILE | machine FOLDER ROOT | benchmark COUNTER... <JSON | planes NAME INFO.json...
        flights NAME REPORT_FOLDER... | store TITLE REPORT_FOLDER | conversion JSON FOLDER |
        stamp ROOT | targets FOLDER"""
 import json
@@ -8,6 +8,7 @@ import os
 import re
 import subprocess
 import sys
+import textwrap
 
 
 def row(*cells):
@@ -31,18 +32,91 @@ def digits(value):
     return f"{value:.0f}" if abs(value) >= 100 else f"{value:.3g}"
 
 
+def wrapped(text):
+    """Prose of at most 120 columns; tables, code and short lines as they are."""
+    lines, code = [], False
+    for line in text.splitlines():
+        code ^= line.startswith("```")
+        long = len(line) > 120 and not code and not line.startswith("|")
+        lines += textwrap.wrap(line, 120, break_long_words=False, break_on_hyphens=False) if long else [line]
+    return "\n".join(lines)
+
+
 def put(page, section, file):
-    """Replaces what stands between the section's two marks."""
+    """Replaces the lines between the section's two marks."""
     begin, end = f"<!-- {section}: tests/bench/all.sh {section} -->", f"<!-- end of {section} -->"
     text = open(page).read()
     if text.count(begin) != 1 or text.count(end) != 1:
         sys.exit(f"error: {page}: found no marks of section {section} (expected {begin} and {end})")
     before, rest = text.split(begin)
     after = rest.split(end)[1]
-    body = open(file).read().strip()
+    body = wrapped(open(file).read().strip())
     with open(page + ".part", "w") as out:
         out.write(f"{before}{begin}\n{body}\n{end}{after}")
     os.replace(page + ".part", page)
+
+
+# The main figures of each section: patterns, each of which fills the braces of its text. The first match of a pattern
+# counts, or the last where the text begins with "last ".
+HEADLINES = {
+    "conversion": [(r"^\| (\S+) \| LAS \| \S+ \| \S+ s \| (\S+ M) \| (\S+ µs) \| (\S+ GiB) \|",
+                    "last {0} points of LAS: {1} points/s, {2} of CPU a point, {3} of memory"),
+                   (r"^\| (\S+) \| LAZ \| \S+ \| \S+ s \| (\S+ M) \|", "last as LAZ: {1} points/s")],
+    "larger": [(r"^\| (\S+) \| LAS \| (\S+) \| (\S+ s) \| (\S+ M) \| \S+ µs \| (\S+ GiB) \|",
+                "last {0} points of LAS with `--memory {1}`: {2}, {3} points/s, {4} of memory")],
+    "store": [(r"^\| bytes a point, stored / plain \| (.+?) \|", "A {0}:"),
+              (r"^\| \*\*all\*\* \| \*\*(\S+)\*\*", "{0} bytes a point")],
+    "selection": [(r"^\| passWithOcclusion/20/20 \| \S+ ms \| (\S+ ms) \| (\d+) \|",
+                   "An LOD pass that selects {1} nodes: {0} of CPU with the occlusion test"),
+                  (r"^\| passWithout/20/20 \| \S+ ms \| (\S+ ms) \|", "{0} without")],
+    "loading": [(r"^`(\S+)`:", "A point of `{0}` made ready for drawing:"),
+                (r"^\| all for drawing, 10 bits \|.*?\| (\S+) \| \S+ \| \S+ \|$", "{0} ns with 10 bits"),
+                (r"^\| all for drawing, 20 bits \|.*?\| (\S+) \| \S+ \| \S+ \|$", "{0} ns with 20 bits"),
+                (r"^\| finding occluders \|.*?\| (\S+) \| \S+ \| \S+ \|$", "{0} ns for its occluders")],
+    "streaming": [(r"^(\S+ %) of the nodes loaded", "Indoors the occlusion test leaves {0} of the nodes to load"),
+                  (r"p99 over the slow disk / instant: (\S+)",
+                   "the 99th percentile of frame times over a disk of 200 ms a read is {0} times that over an instant one")],
+    "rasterizers": [(r"^\| cpu/far/1 \|.*\| (\S+) \|$", "Points a second: {0} million by `cpu` on one core"),
+                    (r"^\| cpu/far/2 \|.*\| (\S+) \|$", "{0} million on two"),
+                    (r"^\| onGl/compute32 \|.*\| (\S+) \|$", "{0} million by `compute32` on llvmpipe"),
+                    (r"^\| onGl/points \|.*\| (\S+) \|$", "{0} million by `points`")],
+    "progressive": [(r"^Against drawing everything \(Table 4\.4\), (\S+ M) points", "A frame of {0} points:"),
+                    (r"^\| everything, compute32 \| (\S+) \|", "{0} ms by `compute32`"),
+                    (r"^\| progressive, (\S+ M) a frame \| (\S+) \|", "last {1} ms with {0} points a frame")],
+    "kanzok": [(r"^Outdoors: a city, (\S+ [MGk]) points", "Overview of a city of {0} points:"),
+               (r"^\| 65536, with \| (\d+) \| (\S+ [MGk]) \| (\d+) \|", "{0} nodes, {1} points, {2} frames a second"),
+               (r"^\| \*65536, with\* \| (\d+) \| (\S+ [MGk]) \| (\d+) \|",
+                "in the paper {0} nodes, {1} points, {2} frames a second")],
+    "schuetz": [(r"^\| manor \| (\S+ [MGk]) \| \S+ \| \S+ \| (\S+) \|(?:.*)\| (\S+) \|$",
+                 "{0} points without LOD: {1} ms by `cpu`, {2} times as fast as `GL_POINTS`")],
+    "guenther": [(r"^\| 170 \| \S+ \| \S+ \| \S+ \| \S+ \| \S+ \| \S+ \| (\S+) \|",
+                  "170 planes one behind the other: `compute_lock` is {0} times as fast as `GL_POINTS`")],
+    "flights": [(r"^\| orbit \| (\S+ ms) \| \S+ ms \| (\S+ ms) \|", "Frame times, median and 99th percentile: orbit {0}, {1}"),
+                (r"^\| flythrough \| (\S+ ms) \| \S+ ms \| (\S+ ms) \|", "flythrough {0}, {1}")],
+    "real": [(r"^\| orbit, cold \| (\S+ ms) \| \S+ ms \| (\S+ ms) \|",
+              "Frame times, median and 99th percentile: orbit {0}, {1}"),
+             (r"^\| flythrough, cold \| (\S+ ms) \| \S+ ms \| (\S+ ms) \|", "flythrough {0}, {1}")],
+    "filling": [(r"^\| nothing \|(?: \S+ %, \S+ %, \S+ dB, \S+ \|)? \S+ %, \S+ %, (\S+ dB), \S+ \|$",
+                 "A sixteenth of a scan against all of it: {0} unfilled"),
+                (r"^\| window 7 \|(?: \S+ %, \S+ %, \S+ dB, \S+ \|)? \S+ %, \S+ %, (\S+ dB), \S+ \|$",
+                 "{0} by windows of 7 pixels"),
+                (r"^\| with normals of the neighbourhood \(jump-flood\) \|(?: \S+ %, \S+ %, \S+ dB, \S+ \|)? \S+ %, \S+ %, "
+                 r"(\S+ dB), \S+ \|$", "{0} by `jump-flood`")],
+    "largest": [(r"^The largest city: (\S+ [MGk]) points", "{0} points:"),
+                (r"^Converted in (\S+ s) \((\S+ M) points/s", "converted in {0}, {1} points/s"),
+                (r"^\| orbit, cold \| (\S+ ms) \| \S+ ms \| (\S+ ms) \|",
+                 "median and 99th percentile of the frame times of an orbit {0}, {1}")],
+}
+
+
+def headline(section, file):
+    """The section's main figures in one line."""
+    measured, parts = open(file).read(), []
+    for pattern, text in HEADLINES[section]:
+        found = list(re.finditer(pattern, measured, re.M))
+        if found:
+            parts.append(text.removeprefix("last ").format(*found[-1 if text.startswith("last ") else 0].groups()))
+    print("; ".join(parts).replace(":; ", ": ") + "." if parts else "Not measured.")
 
 
 def stamp(root):
@@ -187,7 +261,7 @@ def targets(folder):
             (float(opened.group(1)) + float(opened.group(2))) / 1e3 if opened else None, 1, 0.2, " s")
 
 
-COMMANDS = {f.__name__: f for f in (put, machine, benchmark, planes, flights, store, conversion, stamp, targets)}
+COMMANDS = {f.__name__: f for f in (put, headline, machine, benchmark, planes, flights, store, conversion, stamp, targets)}
 if len(sys.argv) < 2 or sys.argv[1] not in COMMANDS:
     sys.exit(__doc__)
 COMMANDS[sys.argv[1]](*sys.argv[2:])

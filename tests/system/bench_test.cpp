@@ -254,29 +254,32 @@ TEST_F(Bench, ABrowserPrintsTheReport) {
   EXPECT_LE(pages, 12u);
 }
 
-// --- docs/benchmarks.md
+// --- docs/benchmarks.md and docs/benchmarks/
 
-TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
-  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
-  const std::filesystem::path page = file("page.md");
-  std::filesystem::copy_file(sourceFolder() / "docs/benchmarks.md", page);
-  const Finished done = runProgram((sourceFolder() / "tests/bench/all.sh").string(),
-                                   {"-b", programFolder().parent_path().string(), "-d", file("all").string(), "-o",
-                                    page.string(), "-q", "machine", "targets"});
-  ASSERT_EQ(done.exitCode, 0) << done.err;
-  const std::string text = readWhole(page);
-  EXPECT_NE(text.find("**Machine**: "), std::string::npos);
-  EXPECT_NE(text.find("| convert LAS, largest size | not measured | 5 M points/s | 9 M points/s |"), std::string::npos);
-  for (const char* section :
-       {"machine", "targets", "conversion", "store", "selection", "streaming", "rasterizers", "progressive", "kanzok",
-        "schuetz", "guenther", "flights", "real", "filling", "largest", "larger"}) {
-    const std::string name = section;
-    const std::size_t begin = text.find("<!-- " + name + ": tests/bench/all.sh " + name + " -->");
-    ASSERT_NE(begin, std::string::npos) << name;
-    EXPECT_NE(text.find("<!-- end of " + name + " -->", begin), std::string::npos) << name;
-  }
-  // No table and nothing measured stands outside of the marks.
-  const std::regex measured("[0-9] ?(%|(s|ms|µs|ns|[GM]B|[GM]iB|[GM]B/s|times|points/s)([^A-Za-z/]|$))");
+/// The sections that tests/bench/all.sh measures into pages of their own.
+const std::vector<std::string> kSections{"conversion", "larger",      "store",       "selection", "loading",
+                                         "streaming",  "rasterizers", "progressive", "kanzok",    "schuetz",
+                                         "guenther",   "flights",     "real",        "filling",   "largest"};
+
+/// Copies the benchmark pages into `folder`, where all.sh may write into them.
+void copyPages(const std::filesystem::path& folder) {
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy_file(sourceFolder() / "docs/benchmarks.md", folder / "benchmarks.md");
+  std::filesystem::copy(sourceFolder() / "docs/benchmarks", folder / "benchmarks");
+}
+
+/// The lines between a section's marks; empty with a failed expectation where the marks are missing.
+std::string markedPart(const std::string& text, const std::string& section) {
+  const std::string mark = "<!-- " + section + ": tests/bench/all.sh " + section + " -->\n";
+  const std::size_t begin = text.find(mark), end = text.find("<!-- end of " + section + " -->");
+  EXPECT_TRUE(begin != std::string::npos && end != std::string::npos && begin < end) << "no marks of " << section;
+  if (begin == std::string::npos || end == std::string::npos || end < begin) return {};
+  return text.substr(begin + mark.size(), end - begin - mark.size());
+}
+
+/// Expects that no table and nothing measured lies outside of the marks.
+void expectOnlyWordsOutsideTheMarks(const std::string& text) {
+  static const std::regex measured("[0-9] ?(%|(s|ms|µs|ns|[GM]B|[GM]iB|[GM]B/s|times|points/s)([^A-Za-z/]|$))");
   bool inside = false;
   for (const std::string& line : linesOf(text)) {
     if (line.starts_with("<!-- ")) inside = !line.starts_with("<!-- end of ");
@@ -284,23 +287,66 @@ TEST_F(Bench, EveryFigureOfTheBenchmarkPageStandsBetweenTheMarksOfASection) {
   }
 }
 
+TEST_F(Bench, EveryFigureOfTheBenchmarkPagesStandsBetweenTheMarksOfASection) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
+  const std::filesystem::path docs = file("docs");
+  copyPages(docs);
+  const Finished done = runProgram((sourceFolder() / "tests/bench/all.sh").string(),
+                                   {"-b", programFolder().parent_path().string(), "-d", file("all").string(), "-o",
+                                    docs.string(), "-q", "machine", "targets"});
+  ASSERT_EQ(done.exitCode, 0) << done.err;
+  const std::string page = readWhole(docs / "benchmarks.md");
+  EXPECT_NE(markedPart(page, "machine").find("**Machine**: "), std::string::npos);
+  EXPECT_NE(
+      markedPart(page, "targets").find("| convert LAS, largest size | not measured | 5 M points/s | 9 M points/s |"),
+      std::string::npos);
+  expectOnlyWordsOutsideTheMarks(page);
+  for (const std::string& section : kSections) {
+    EXPECT_NE(markedPart(page, section), "") << section;
+    EXPECT_NE(page.find("(benchmarks/" + section + ".md)"), std::string::npos) << section;
+    const std::string tables = readWhole(docs / "benchmarks" / (section + ".md"));
+    EXPECT_NE(markedPart(tables, section).find("| "), std::string::npos) << section;
+    expectOnlyWordsOutsideTheMarks(tables);
+  }
+}
+
+TEST_F(Bench, TheMainFiguresOfThePageAreThoseOfTheTables) {
+  if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
+  const std::string page = readWhole(sourceFolder() / "docs/benchmarks.md");
+  const auto words = [](const std::string& text) {
+    std::istringstream in(text);
+    std::vector<std::string> all;
+    for (std::string word; in >> word;) all.push_back(word);
+    return all;
+  };
+  for (const std::string& section : kSections) {
+    const std::string tables = (sourceFolder() / "docs/benchmarks" / (section + ".md")).string();
+    const Finished made = runProgram(
+        "/usr/bin/python3", {(sourceFolder() / "tests/bench/tables.py").string(), "headline", section, tables});
+    ASSERT_EQ(made.exitCode, 0) << made.err;
+    EXPECT_EQ(words(markedPart(page, section)), words(made.out)) << section;
+    EXPECT_EQ(made.out.find("Not measured"), std::string::npos) << section;
+  }
+}
+
 TEST_F(Bench, TheSectionOfProgressiveDrawingIsWritten) {
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
-  const std::filesystem::path page = file("progressive.md");
-  std::filesystem::copy_file(sourceFolder() / "docs/benchmarks.md", page);
+  const std::filesystem::path docs = file("progressive_docs");
+  copyPages(docs);
   const Finished done = runProgram(
       "/usr/bin/env", {"RED_ROCKS=" + file("none").string(), (sourceFolder() / "tests/bench/all.sh").string(), "-b",
-                       programFolder().parent_path().string(), "-d", file("progressive").string(), "-o", page.string(),
+                       programFolder().parent_path().string(), "-d", file("progressive").string(), "-o", docs.string(),
                        "-q", "progressive"});
   ASSERT_EQ(done.exitCode, 0) << done.err;
-  const std::string text = readWhole(page);
-  const std::size_t begin = text.find("<!-- progressive: "), end = text.find("<!-- end of progressive -->");
-  const std::string section = text.substr(begin, end - begin);
+  const std::string section = markedPart(readWhole(docs / "benchmarks/progressive.md"), "progressive");
   for (const char* table :
        {"| pool | perfect shuffle | keyed |", "| whole nodes |", "| pieces |", "| 99 % |", "| reproject |", "| turn |",
         "| everything, compute32 |", "written into a full pool |", "| progressive 0.02 M |"})
     EXPECT_NE(section.find(table), std::string::npos) << table << " in\n" << section;
   EXPECT_NE(section.find(" 0 % |\n\nSource: "), std::string::npos) << "a wrong pixel in\n" << section;
+  const std::string headline = markedPart(readWhole(docs / "benchmarks.md"), "progressive");
+  EXPECT_EQ(headline.find("A frame of "), 0u) << headline;
+  EXPECT_NE(headline.find(" points: "), std::string::npos) << headline;
 }
 
 TEST_F(Bench, ConversionsMeasuredOneByOneShareTheirTables) {
