@@ -1,4 +1,5 @@
-// How good pictures of few points are, against the picture of all points; docs/lod.md has the results.
+// How good pictures of few points are, against the picture of all points; docs/benchmarks/lod_quality.md has the
+// results.
 //   lod_quality compare OUT REFERENCE.strata VIEWS.json LABEL=NAME.strata...   PSNR and SSIM at equal numbers of points
 //   lod_quality coverage OUT (LABEL NAME.strata VIEWS.json)...                 covered share over points a pixel
 //   lod_quality growth OUT NAME.strata VIEWS.json                              change of the picture when the budget

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Measures what level of detail costs in picture quality, as docs/lod.md reports it: converts red_rocks and a synthetic
+# Measures what level of detail costs in picture quality, as docs/benchmarks/lod_quality.md reports it: converts red_rocks and a synthetic
 # city with each way of sampling and of colouring, and compares pictures of few points with the picture of all points.
 # usage: tests/bench/lod_quality.sh RED_ROCKS.laz FOLDER [CITY_POINTS]
-#   The plots FOLDER/*/*.svg and tables FOLDER/*/*.tsv are the figures of docs/lod.md; pictures lie beside them.
+#   The plots FOLDER/*/*.svg and tables FOLDER/*/*.tsv are the figures of docs/benchmarks/lod_quality.md; pictures lie beside them.
 set -euo pipefail
 red_rocks=$1
 folder=$2
