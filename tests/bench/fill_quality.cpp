@@ -1,5 +1,5 @@
 // How well holes are filled: a scan thinned at random, drawn and filled in several ways, against the picture of the
-// whole scan. docs/effects.md has the results.
+// whole scan. docs/benchmarks/filling.md has the results.
 //   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]   PSNR, SSIM, covered and wrongly filled pixels, first
 //   view fill_quality times NAME.strata VIEWS.json [KEPT...]          milliseconds of each step fill_quality steadiness
 //   NAME.strata VIEWS.json [KEPT...]     difference of successive frames

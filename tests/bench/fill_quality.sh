@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Measures hole filling as docs/effects.md reports it: converts red_rocks and a synthetic city, thins them to a quarter and
+# Measures hole filling as docs/hole_filling.md reports it: converts red_rocks and a synthetic city, thins them to a quarter and
 # a sixteenth, and compares the ways of filling with the picture of the whole scan. Prints the tables; about three minutes
 # on two idle cores with 16 million points.
 # usage: tests/bench/fill_quality.sh RED_ROCKS.laz FOLDER [CITY_POINTS]
