@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "lod/occluders.h"
+#include "lod/streamed_node.h"
 
 namespace strata {
 

@@ -9,7 +9,7 @@
 #include "io/store/store.h"
 #include "lod/load_queue.h"
 #include "lod/node_reader.h"
-#include "lod/occluders.h"
+#include "lod/streamed_node.h"
 
 namespace strata {
 

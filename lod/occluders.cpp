@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/instruction_sets.h"
-#include "lod/cell_plane.h"
+#include "lod/cell_surface.h"
 
 namespace strata {
 namespace {
@@ -97,18 +97,18 @@ class PointsByCell {
 };
 
 /// The part of the plane inside the cell: a part of the cell's square lifted to the plane, clipped at the cell's top
-/// and bottom. Coordinates as in CellPlane.
-void clipToCell(const CellPlane& plane, const SquareRectangle& part, int grid, Occluder& out) {
+/// and bottom. Coordinates as in CellSurface.
+void clipToCell(const CellSurface& surface, const SquareRectangle& part, int grid, Occluder& out) {
   std::array<glm::vec3, 8> polygon, clipped;
   std::size_t count = 4;
-  const auto w = static_cast<glm::length_t>(plane.w);
+  const auto w = static_cast<glm::length_t>(surface.w);
   for (std::size_t i = 0; i < 4; ++i) {
     const int column = i == 1 || i == 2 ? part.right : part.left, row = i >= 2 ? part.bottom : part.top;
     const float atU = static_cast<float>(column) / static_cast<float>(grid) - 0.5f;
     const float atV = static_cast<float>(row) / static_cast<float>(grid) - 0.5f;
-    polygon[i][static_cast<glm::length_t>(plane.u)] = atU;
-    polygon[i][static_cast<glm::length_t>(plane.v)] = atV;
-    polygon[i][w] = plane.height(atU, atV);
+    polygon[i][static_cast<glm::length_t>(surface.u)] = atU;
+    polygon[i][static_cast<glm::length_t>(surface.v)] = atV;
+    polygon[i][w] = surface.height(atU, atV);
   }
   for (const float sign : {-1.0f, 1.0f}) {
     std::size_t kept = 0;
@@ -157,7 +157,7 @@ class Finder {
 
   struct Found {
     std::size_t cell = 0;
-    CellPlane plane;
+    CellSurface surface;
     int grid = 0;
     SquareRectangle part;    ///< of the grid; beyond it where cells beside it were joined
     std::uint32_t seed = 0;  ///< the first in found_ that has this very plane
@@ -165,20 +165,21 @@ class Finder {
 
   std::vector<Found> find() {
     for (std::size_t cell = 0; cell < kCellCount; ++cell) {
-      CellPlane plane;
-      if (isCovered(cell) || points_.of(cell).size() < OccluderSet::kLeastPoints || !fitPlane(points_.of(cell), plane))
+      CellSurface surface;
+      if (isCovered(cell) || points_.of(cell).size() < OccluderSet::kLeastPoints ||
+          !fitSurface(points_.of(cell), surface))
         continue;
       const std::size_t first = found_.size();
-      tryPlane(cell, plane, static_cast<std::uint32_t>(first));
+      trySurface(cell, surface, static_cast<std::uint32_t>(first));
       spread(first);
     }
     return std::move(found_);
   }
 
  private:
-  static bool crosses(const CellPlane& plane) {
-    const glm::vec3 steep = glm::abs(plane.normal);
-    return std::abs(plane.offset) < 0.5f * (steep.x + steep.y + steep.z);
+  static bool crosses(const CellSurface& surface) {
+    const glm::vec3 steep = glm::abs(surface.normal);
+    return std::abs(surface.offset) < 0.5f * (steep.x + steep.y + steep.z);
   }
 
   /// Where a wall meets the floor or has something before it, the points of a cell lie in no one plane; that of the
@@ -191,9 +192,10 @@ class Finder {
           glm::ivec3 beside = cell;
           beside[axis] += side;
           if (beside[axis] < 0 || beside[axis] >= cellsAlong_) continue;
-          CellPlane plane = found_[i].plane;
-          plane.offset -= plane.normal[axis] * static_cast<float>(side);
-          if (crosses(plane) && !isKnown(cellIndex(beside), plane)) tryPlane(cellIndex(beside), plane, found_[i].seed);
+          CellSurface surface = found_[i].surface;
+          surface.offset -= surface.normal[axis] * static_cast<float>(side);
+          if (crosses(surface) && !isKnown(cellIndex(beside), surface))
+            trySurface(cellIndex(beside), surface, found_[i].seed);
         }
     }
   }
@@ -206,35 +208,35 @@ class Finder {
   }
 
   /// True when the cell has a plane so like this one that a second would tell nothing new, or enough of them.
-  bool isKnown(std::size_t cell, const CellPlane& plane) const {
+  bool isKnown(std::size_t cell, const CellSurface& surface) const {
     std::size_t known = 0;
     for (std::uint32_t at = first_[cell]; at != 0; at = next_[at - 1]) {
       if (++known == kMostSpread) return true;
-      const CellPlane& other = found_[at - 1].plane;
-      if (std::abs(glm::dot(other.normal, plane.normal)) > 0.95f &&
-          std::abs(std::abs(other.offset) - std::abs(plane.offset)) < 4.0f * layer_)
+      const CellSurface& other = found_[at - 1].surface;
+      if (std::abs(glm::dot(other.normal, surface.normal)) > 0.95f &&
+          std::abs(std::abs(other.offset) - std::abs(surface.offset)) < 4.0f * layer_)
         return true;
     }
     return false;
   }
 
-  void tryPlane(std::size_t cell, CellPlane& plane, std::uint32_t seed) {
+  void trySurface(std::size_t cell, CellSurface& surface, std::uint32_t seed) {
     const std::span<const CellPoint> points = points_.of(cell);
     if (points.size() < OccluderSet::kLeastPoints || found_.size() >= OccluderSet::kMost) return;
-    markSquares(points, layer_, plane);
+    markSquares(points, layer_, surface);
     std::array<ClosedSquares, 3> grids;
     for (std::size_t i = 0; i < grids.size(); ++i) {
       const int grid = kCellGrid >> i;
-      grids[i] = ClosedSquares(plane, grid);
-      if (grids[i].all()) return add({cell, plane, grid, {0, grid, 0, grid}, seed});
+      grids[i] = ClosedSquares(surface, grid);
+      if (grids[i].all()) return add({cell, surface, grid, {0, grid, 0, grid}, seed});
     }
     for (const ClosedSquares& squares : grids)
-      if (addParts(cell, plane, squares, seed)) return;
+      if (addParts(cell, surface, squares, seed)) return;
   }
 
   /// Where a door, a window or something that stands before a wall leaves the cell open, the largest rectangles that
   /// are not. False where they are too small to be worth their time.
-  bool addParts(std::size_t cell, const CellPlane& plane, const ClosedSquares& squares, std::uint32_t seed) {
+  bool addParts(std::size_t cell, const CellSurface& surface, const ClosedSquares& squares, std::uint32_t seed) {
     const int least = squares.side * squares.side / kLeastPart;
     if (squares.held < least) return false;
     SquareRows inner = squares.inner();
@@ -242,7 +244,7 @@ class Finder {
     for (; parts < kMostParts && found_.size() < OccluderSet::kMost; ++parts) {
       const SquareRectangle part = largestRectangle(inner, squares.side, least);
       if (part.area() == 0) break;
-      add({cell, plane, squares.side, part, seed});
+      add({cell, surface, squares.side, part, seed});
       const std::uint32_t columns = (1u << part.right) - (1u << part.left);
       for (int row = part.top; row < part.bottom; ++row) {
         std::uint16_t& bits = inner[static_cast<std::size_t>(row)];
@@ -289,15 +291,15 @@ void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t c
     Finder::Found& first = found[i];
     if (joined[i] || !isWhole(first)) continue;
     const glm::ivec3 at = cellAt(first.cell);
-    const auto u = static_cast<glm::length_t>(first.plane.u), v = static_cast<glm::length_t>(first.plane.v);
+    const auto u = static_cast<glm::length_t>(first.surface.u), v = static_cast<glm::length_t>(first.surface.v);
     /// The other that continues this one so many cells along u and v; found.size() if there is none.
     const auto other = [&](int alongU, int alongV) {
       glm::ivec3 cell = at;
       cell[u] += alongU;
       cell[v] += alongV;
-      const float height = first.plane.height(static_cast<float>(alongU), static_cast<float>(alongV));
-      const float slope = std::abs(first.plane.height(0.5f, 0.0f) - first.plane.height(0.0f, 0.0f)) +
-                          std::abs(first.plane.height(0.0f, 0.5f) - first.plane.height(0.0f, 0.0f));
+      const float height = first.surface.height(static_cast<float>(alongU), static_cast<float>(alongV));
+      const float slope = std::abs(first.surface.height(0.5f, 0.0f) - first.surface.height(0.0f, 0.0f)) +
+                          std::abs(first.surface.height(0.0f, 0.5f) - first.surface.height(0.0f, 0.0f));
       if (cell[u] >= cellsAlong || cell[v] >= cellsAlong || cell[v] < 0 || std::abs(height) + slope > 0.5f)
         return found.size();
       for (std::uint32_t k = firstOf[cellIndex(cell)]; k != 0; k = nextOf[k - 1]) {
@@ -356,17 +358,17 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
   out.occluders.reserve(std::min(all.size(), most));
   for (const Finder::Found& found : all) {
     if (out.occluders.size() == most) break;
-    const CellPlane& plane = found.plane;
+    const CellSurface& surface = found.surface;
     Occluder occluder;
-    clipToCell(plane, found.part, found.grid, occluder);
+    clipToCell(surface, found.part, found.grid, occluder);
     if (occluder.corners < 3 || areaOf(occluder) < kLeastArea) continue;
     const glm::ivec3 at = cellAt(found.cell);
     const glm::vec3 centre = glm::vec3(at) + 0.5f - 0.5f * static_cast<float>(cellsAlong);
     for (std::size_t k = 0; k < occluder.corners; ++k) occluder.corner[k] = (occluder.corner[k] + centre) * metres;
-    occluder.normal = plane.normal;
-    occluder.offset = (plane.offset + glm::dot(plane.normal, centre)) * metres;
+    occluder.normal = surface.normal;
+    occluder.offset = (surface.offset + glm::dot(surface.normal, centre)) * metres;
     const float square = metres / static_cast<float>(found.grid);
-    occluder.gap = square / std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]);
+    occluder.gap = square / std::abs(surface.normal[static_cast<glm::length_t>(surface.w)]);
     occluder.back = layer * metres + 0.5f * occluder.gap;
     occluder.whole = (childMask >> octantOf(at, cellsAlong) & 1) == 0;
     out.occluders.push_back(occluder);

@@ -8,7 +8,6 @@
 
 #include "core/box.h"
 #include "core/node_data.h"
-#include "io/store/node_codec.h"
 
 namespace strata {
 
@@ -27,9 +26,7 @@ struct Occluder {
 
 /// What of a node hides things behind it, found from its points when it is loaded.
 struct OccluderSet {
-  static constexpr int kCells = 8;        ///< of a node's cube, along each axis; 4 where it has few points
-  static constexpr int kFinestGrid = 16;  ///< squares along a cell's side in which points are looked for
-  static constexpr int kCoarsestGrid = 4;
+  static constexpr int kCells = 8;                   ///< of a node's cube, along each axis; 4 where it has few points
   static constexpr std::uint32_t kLeastPoints = 16;  ///< of a cell that is looked at; no occluder has fewer
   static constexpr std::size_t kMost = 512;          ///< occluders of a node
   /// Occluders of a node with so many points; what is found beyond is left out.
@@ -49,17 +46,5 @@ struct OccluderSet {
 ///
 /// `cube` is the node's, `childMask` that of its record. Uses the leading 10 bits of the positions. `out` is replaced.
 void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask, OccluderSet& out);
-
-/// A node as the streamer keeps it.
-struct StreamedNode : NodeData {
-  OccluderSet occluding;
-  std::vector<std::byte> head;     ///< of its payload, to read the rest by
-  std::uint32_t leadingBytes = 0;  ///< of the payload that have been read: whole planes
-  PlaneEnds ends;
-
-  std::uint64_t memoryBytes() const {
-    return bytes() + head.capacity() + occluding.occluders.capacity() * sizeof(Occluder);
-  }
-};
 
 }  // namespace strata

@@ -6,7 +6,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "lod/occluders.h"
+#include "lod/streamed_node.h"
 
 namespace strata {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lod/lod_pass.h"
+#include "lod/streamed_node.h"
 #include "tests/support/lod_store.h"
 #include "tests/support/lod_town.h"
 

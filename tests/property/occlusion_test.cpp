@@ -15,6 +15,7 @@
 #include "io/synthetic/scanner.h"
 #include "lod/coarse_depth.h"
 #include "lod/selection.h"
+#include "lod/streamed_node.h"
 #include "tests/support/oracle.h"
 #include "tests/support/random.h"
 #include "tests/support/test_data.h"

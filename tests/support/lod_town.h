@@ -8,7 +8,7 @@
 
 #include "core/make_node.h"
 #include "io/store/store.h"
-#include "lod/occluders.h"
+#include "lod/streamed_node.h"
 #include "tests/support/lod_store.h"
 
 namespace strata::test {

@@ -6,12 +6,10 @@
 
 #include <glm/glm.hpp>
 
-#include "lod/occluders.h"
-
 namespace strata {
 
-/// Squares along a cell's side, at the finest.
-inline constexpr int kCellGrid = OccluderSet::kFinestGrid;
+/// Squares along a cell's side at the finest; a row of them fills the bits of a SquareRows entry.
+inline constexpr int kCellGrid = 16;
 /// Rows of bits, one for each square of a grid.
 using SquareRows = std::array<std::uint16_t, kCellGrid>;
 
@@ -20,7 +18,7 @@ using CellPoint = std::uint32_t;
 
 /// A plane in a cell, seen along its steepest axis as a height over the other two. Coordinates from the cell's
 /// centre in sides of the cell.
-struct CellPlane {
+struct CellSurface {
   glm::vec3 normal{0.0f};
   float offset = 0.0f;
   std::size_t u = 0, v = 1, w = 2;  ///< w is the axis that the normal is nearest to
@@ -33,10 +31,10 @@ struct CellPlane {
 };
 
 /// The plane through the points' mean across their smallest principal axis. False where there is none.
-bool fitPlane(std::span<const CellPoint> points, CellPlane& plane);
+bool fitSurface(std::span<const CellPoint> points, CellSurface& surface);
 
 /// Notes in which squares there are points within `layer` of the plane.
-void markSquares(std::span<const CellPoint> points, float layer, CellPlane& plane);
+void markSquares(std::span<const CellPoint> points, float layer, CellSurface& surface);
 
 /// The squares of a coarser grid, and whether each holds a point, or need not: the plane leaves the cell there.
 struct ClosedSquares {
@@ -45,7 +43,7 @@ struct ClosedSquares {
   int needed = 0, held = 0;  ///< squares that the plane crosses inside the cell, and those of them with a point
 
   ClosedSquares() = default;
-  ClosedSquares(const CellPlane& plane, int gridSide);
+  ClosedSquares(const CellSurface& surface, int gridSide);
   bool all() const { return needed > 0 && held == needed; }
   /// Those that have none but closed ones around them (as far as the cell goes): a square with a point may lie half
   /// beyond the edge of the surface.

@@ -1,4 +1,4 @@
-#include "lod/cell_plane.h"
+#include "lod/cell_surface.h"
 
 #include <algorithm>
 #include <bit>
@@ -40,11 +40,11 @@ using SquareBytes = std::array<std::uint8_t, kSquares + 8>;
 
 /// Sets the bytes of squares that have points near the plane.
 inline __attribute__((always_inline)) void markBytes(std::span<const CellPoint> points, float layer,
-                                                     const CellPlane& plane, SquareBytes& bytes) {
+                                                     const CellSurface& surface, SquareBytes& bytes) {
   constexpr int kShift = std::countr_zero(1024u / kCellGrid);
-  const glm::vec3 normal = plane.normal / 1024.0f;
-  const float base = (0.5f - 512.0f) * (normal.x + normal.y + normal.z) - plane.offset;
-  const int u = 10 * static_cast<int>(plane.u) + kShift, v = 10 * static_cast<int>(plane.v) + kShift;
+  const glm::vec3 normal = surface.normal / 1024.0f;
+  const float base = (0.5f - 512.0f) * (normal.x + normal.y + normal.z) - surface.offset;
+  const int u = 10 * static_cast<int>(surface.u) + kShift, v = 10 * static_cast<int>(surface.v) + kShift;
   constexpr std::size_t kAtOnce = 256;
   std::array<std::uint32_t, kAtOnce> square;
   for (; !points.empty(); points = points.subspan(std::min(points.size(), kAtOnce))) {
@@ -61,12 +61,12 @@ inline __attribute__((always_inline)) void markBytes(std::span<const CellPoint> 
     for (std::size_t i = 0; i < count; ++i) bytes[square[i]] = 1;
   }
 }
-void markBytesPlain(std::span<const CellPoint> points, float layer, const CellPlane& plane, SquareBytes& bytes) {
-  markBytes(points, layer, plane, bytes);
+void markBytesPlain(std::span<const CellPoint> points, float layer, const CellSurface& surface, SquareBytes& bytes) {
+  markBytes(points, layer, surface, bytes);
 }
-STRATA_TARGET_AVX2 void markBytesAvx2(std::span<const CellPoint> points, float layer, const CellPlane& plane,
+STRATA_TARGET_AVX2 void markBytesAvx2(std::span<const CellPoint> points, float layer, const CellSurface& surface,
                                       SquareBytes& bytes) {
-  markBytes(points, layer, plane, bytes);
+  markBytes(points, layer, surface, bytes);
 }
 
 /// Not every processor that this is compiled for counts bits by itself.
@@ -116,17 +116,17 @@ glm::vec3 smallestAxis(const std::array<double, 6>& a) {
   return length > 1e-12 ? glm::vec3(best / length) : glm::vec3(0.0f);
 }
 
-void setNormal(const glm::vec3& normal, CellPlane& plane) {
-  plane.normal = normal;
+void setNormal(const glm::vec3& normal, CellSurface& surface) {
+  surface.normal = normal;
   const glm::vec3 steep = glm::abs(normal);
-  plane.w = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
-  plane.u = (plane.w + 1) % 3;
-  plane.v = (plane.w + 2) % 3;
+  surface.w = steep.x >= steep.y && steep.x >= steep.z ? 0 : steep.y >= steep.z ? 1 : 2;
+  surface.u = (surface.w + 1) % 3;
+  surface.v = (surface.w + 2) % 3;
 }
 
 }  // namespace
 
-bool fitPlane(std::span<const CellPoint> points, CellPlane& plane) {
+bool fitSurface(std::span<const CellPoint> points, CellSurface& surface) {
   Moments moments{};
   if (hasAvx2())
     addMomentsAvx2(points, moments);
@@ -138,34 +138,34 @@ bool fitPlane(std::span<const CellPoint> points, CellPlane& plane) {
   const auto spread = [&](std::size_t k, std::size_t i, std::size_t j) { return mean[k] - mean[i] * mean[j]; };
   setNormal(smallestAxis(
                 {spread(3, 0, 0), spread(4, 1, 1), spread(5, 2, 2), spread(6, 0, 1), spread(7, 0, 2), spread(8, 1, 2)}),
-            plane);
-  plane.offset = glm::dot(plane.normal, (glm::vec3(mean[0], mean[1], mean[2]) + 0.5f) / 1024.0f - 0.5f);
-  return std::abs(plane.normal[static_cast<glm::length_t>(plane.w)]) > 0.5f;
+            surface);
+  surface.offset = glm::dot(surface.normal, (glm::vec3(mean[0], mean[1], mean[2]) + 0.5f) / 1024.0f - 0.5f);
+  return std::abs(surface.normal[static_cast<glm::length_t>(surface.w)]) > 0.5f;
 }
 
-void markSquares(std::span<const CellPoint> points, float layer, CellPlane& plane) {
+void markSquares(std::span<const CellPoint> points, float layer, CellSurface& surface) {
   SquareBytes bytes{};
   if (hasAvx2())
-    markBytesAvx2(points, layer, plane, bytes);
+    markBytesAvx2(points, layer, surface, bytes);
   else
-    markBytesPlain(points, layer, plane, bytes);
+    markBytesPlain(points, layer, surface, bytes);
   for (std::size_t row = 0; row < kCellGrid; ++row) {
     std::uint64_t halves[2];
     std::memcpy(halves, bytes.data() + row * kCellGrid, sizeof halves);
     const auto bitsOf = [](std::uint64_t eight) { return static_cast<unsigned>(eight * 0x0102040810204080u >> 56); };
-    plane.squares[row] = static_cast<std::uint16_t>(bitsOf(halves[0]) | bitsOf(halves[1]) << 8);
+    surface.squares[row] = static_cast<std::uint16_t>(bitsOf(halves[0]) | bitsOf(halves[1]) << 8);
   }
 }
 
-ClosedSquares::ClosedSquares(const CellPlane& plane, int gridSide) : side(gridSide) {
+ClosedSquares::ClosedSquares(const CellSurface& surface, int gridSide) : side(gridSide) {
   const int each = kCellGrid / side;
   const float size = 1.0f / static_cast<float>(side);
   // The plane's height over a square's middle is linear in its column and row.
-  const float alongU =
-      -plane.normal[static_cast<glm::length_t>(plane.u)] / plane.normal[static_cast<glm::length_t>(plane.w)] * size;
-  const float alongV =
-      -plane.normal[static_cast<glm::length_t>(plane.v)] / plane.normal[static_cast<glm::length_t>(plane.w)] * size;
-  const float first = plane.height(0.5f * size - 0.5f, 0.5f * size - 0.5f);
+  const float alongU = -surface.normal[static_cast<glm::length_t>(surface.u)] /
+                       surface.normal[static_cast<glm::length_t>(surface.w)] * size;
+  const float alongV = -surface.normal[static_cast<glm::length_t>(surface.v)] /
+                       surface.normal[static_cast<glm::length_t>(surface.w)] * size;
+  const float first = surface.height(0.5f * size - 0.5f, 0.5f * size - 0.5f);
   const float inside = 0.5f - 0.5f * (std::abs(alongU) + std::abs(alongV));
   const std::uint32_t all = (1u << side) - 1;
   const bool isLevel = std::abs(alongU) < 1e-6f;
@@ -173,7 +173,7 @@ ClosedSquares::ClosedSquares(const CellPlane& plane, int gridSide) : side(gridSi
   SquareRows withPoints{}, crossed{};
   for (int row = 0; row < side; ++row) {
     std::uint32_t points = 0;
-    for (int i = 0; i < each; ++i) points |= plane.squares[static_cast<std::size_t>(row * each + i)];
+    for (int i = 0; i < each; ++i) points |= surface.squares[static_cast<std::size_t>(row * each + i)];
     for (int columns = kCellGrid; columns > side; columns /= 2) points = halved(points);
     // Columns in which it stays in the cell.
     const float height = first + alongV * static_cast<float>(row);
