@@ -193,8 +193,8 @@ class Reading {
   }
 
   void readPart(const Part& part, RunSorter& sorter, Tally& tally) {
-    const auto reader = sources_[part.source]->openPart(part.part);
     PointPacker packer(frame_, format_, *sources_[part.source], frame_.mappings[part.source]);
+    const auto reader = packer.open(part.part);
     AttributeVariation variation;
     std::uint64_t unseen = 0;  // by the progress line
     while (!outside_ && !failed_ && packer.read(*reader, RunSorter::kBlockPoints)) {

@@ -20,7 +20,7 @@ bool wholeFactor(double ratio, std::int64_t& whole) {
 
 PointPacker::PointPacker(const Survey& frame, const PackedFormat& format, const PointSource& source,
                          const SourceMapping& mapping)
-    : frame_(frame), format_(format), mapping_(mapping), sourceStride_(source.info().layout.stride()) {
+    : frame_(frame), format_(format), source_(source), mapping_(mapping), sourceStride_(source.info().layout.stride()) {
   integers_ = findIntegerAxes(source);
 }
 
@@ -119,15 +119,17 @@ void PointPacker::addAttributes() {
   }
 }
 
+std::unique_ptr<PointReader> PointPacker::open(std::size_t part) const {
+  return integers_ ? source_.openIntegers(part) : source_.openPart(part);
+}
+
 bool PointPacker::read(PointReader& reader, std::size_t maxPoints) {
   count_ = skipped_ = 0;
   outside_ = false;
-  const bool more = integers_ ? reader.readIntegers(block_, maxPoints) : reader.read(block_, maxPoints);
-  if (!more) return false;
-  const std::size_t points = integers_ ? block_.integers.size() : block_.positions.size();
-  packed_.resize(points * format_.stride());
+  if (!reader.read(block_, maxPoints)) return false;
+  packed_.resize(block_.count() * format_.stride());
   const auto pack = [&]<typename Grid>(Grid) {
-    if (integers_)
+    if (!block_.integers.empty())
       packIntegers<Grid>();
     else
       packDoubles<Grid>();

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "converter/distribute/attribute_stats.h"
@@ -17,6 +18,8 @@ class PointPacker {
  public:
   PointPacker(const Survey& frame, const PackedFormat& format, const PointSource& source, const SourceMapping& mapping);
 
+  /// Opens one part of the source for read().
+  std::unique_ptr<PointReader> open(std::size_t part) const;
   /// Reads the next at most `maxPoints` points and packs those that are finite; false at the end of the part.
   bool read(PointReader& reader, std::size_t maxPoints);
 
@@ -44,6 +47,7 @@ class PointPacker {
 
   const Survey& frame_;
   const PackedFormat format_;
+  const PointSource& source_;
   const SourceMapping& mapping_;
   const std::size_t sourceStride_;
   bool integers_ = false;  ///< the source's integers are multiples of the store's

@@ -22,7 +22,6 @@
 #include "io/file/positional_io.h"
 #include "io/store/node_codec.h"
 #include "io/store/store_files.h"
-#include "io/table/pcd_source.h"
 
 namespace strata {
 namespace {
@@ -183,8 +182,7 @@ void rewriteNodes(const Store& store, const NormalCodes& codes, const StoreInfo&
 }  // namespace
 
 Viewpoint viewpointOf(const std::vector<std::unique_ptr<PointSource>>& sources) {
-  if (sources.size() != 1 || !sources.front()->info().format.starts_with("PCD")) return std::nullopt;
-  return pcdViewpoint(sources.front()->info().path);
+  return sources.size() == 1 ? sources.front()->info().viewpoint : std::nullopt;
 }
 
 bool normalsMissing(const StoreInfo& info, const ConvertOptions& options, const ConvertControl& control) {

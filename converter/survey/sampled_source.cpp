@@ -17,12 +17,6 @@ class PrefixReader final : public PointReader {
     left_ -= block.count();
     return true;
   }
-  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
-    const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(maxPoints, left_));
-    if (wanted == 0 || !reader_->readIntegers(block, wanted)) return false;
-    left_ -= block.count();
-    return true;
-  }
 
  private:
   std::unique_ptr<PointReader> reader_;
@@ -43,6 +37,9 @@ class SampledSource final : public PointSource {
   std::size_t partCount() const override { return parts_.size(); }
   std::unique_ptr<PointReader> openPart(std::size_t part) const override {
     return std::make_unique<PrefixReader>(whole_.openPart(parts_[part]), pointsOfPart_);
+  }
+  std::unique_ptr<PointReader> openIntegers(std::size_t part) const override {
+    return std::make_unique<PrefixReader>(whole_.openIntegers(parts_[part]), pointsOfPart_);
   }
 
  private:

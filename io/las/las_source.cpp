@@ -30,7 +30,8 @@ class LasSource final : public PointSource {
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override { return static_cast<std::size_t>((points_ + kPartPoints - 1) / kPartPoints); }
-  std::unique_ptr<PointReader> openPart(std::size_t part) const override;
+  std::unique_ptr<PointReader> openPart(std::size_t part) const override { return open(part, false); }
+  std::unique_ptr<PointReader> openIntegers(std::size_t part) const override { return open(part, true); }
 
   void readRecords(std::uint64_t first, std::span<std::byte> records) const {
     file_->read(pointsOffset_ + first * format_.recordBytes, records);
@@ -39,6 +40,8 @@ class LasSource final : public PointSource {
   const glm::dvec3& scale() const { return scale_; }
 
  private:
+  std::unique_ptr<PointReader> open(std::size_t part, bool integers) const;
+
   std::unique_ptr<ByteSource> file_;
   SourceInfo info_;
   LasRecordFormat format_;
@@ -49,20 +52,20 @@ class LasSource final : public PointSource {
 
 class LasReader final : public PointReader {
  public:
-  LasReader(const LasSource& source, std::uint64_t first, std::uint64_t end)
+  LasReader(const LasSource& source, std::uint64_t first, std::uint64_t end, bool integers)
       : source_(source),
+        integers_(integers),
         next_(first),
         end_(end),
         slice_(std::max<std::size_t>(1, kSliceBytes / source.format().recordBytes) * source.format().recordBytes) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
+    if (integers_)
+      return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
+        unpackLasRecords(source_.format(), slice_.data(), integers, attributes);
+      });
     return readInto(block, maxPoints, block.positions, [&](std::span<glm::dvec3> positions, std::byte* attributes) {
       unpackLasRecords(source_.format(), source_.scale(), slice_.data(), positions, attributes);
-    });
-  }
-  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
-    return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
-      unpackLasRecords(source_.format(), slice_.data(), integers, attributes);
     });
   }
 
@@ -86,14 +89,15 @@ class LasReader final : public PointReader {
   }
 
   const LasSource& source_;
+  const bool integers_;
   std::uint64_t next_;
   std::uint64_t end_;
   std::vector<std::byte> slice_;
 };
 
-std::unique_ptr<PointReader> LasSource::openPart(std::size_t part) const {
+std::unique_ptr<PointReader> LasSource::open(std::size_t part, bool integers) const {
   const std::uint64_t first = part * kPartPoints;
-  return std::make_unique<LasReader>(*this, first, std::min(first + kPartPoints, points_));
+  return std::make_unique<LasReader>(*this, first, std::min(first + kPartPoints, points_), integers);
 }
 
 LasMeta metaOf(const LasHead& head) {

@@ -35,7 +35,8 @@ class LazSource final : public PointSource {
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override { return parts_.size(); }
-  std::unique_ptr<PointReader> openPart(std::size_t part) const override;
+  std::unique_ptr<PointReader> openPart(std::size_t part) const override { return open(part, false); }
+  std::unique_ptr<PointReader> openIntegers(std::size_t part) const override { return open(part, true); }
 
   std::unique_ptr<LazDecoder> openRun(const LazRun& run) const {
     return std::make_unique<LazDecoder>(*file_, header_, format_, run);
@@ -44,6 +45,8 @@ class LazSource final : public PointSource {
   bool skipDamaged() const { return skipDamaged_; }
 
  private:
+  std::unique_ptr<PointReader> open(std::size_t part, bool integers) const;
+
   std::unique_ptr<ByteSource> file_;
   LasHeader header_;
   LazFormat format_;
@@ -54,21 +57,21 @@ class LazSource final : public PointSource {
 
 class LazReader final : public PointReader {
  public:
-  LazReader(const LazSource& source, const LazPart& part)
+  LazReader(const LazSource& source, const LazPart& part, bool integers)
       : source_(source),
         part_(part),
+        integers_(integers),
         record_{source.header().pointFormat, source.header().recordBytes},
         nextPoint_(part.firstPoint),
         batch_(kBatchPoints * record_.recordBytes) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
+    if (integers_)
+      return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
+        unpackLasRecords(record_, batch_.data(), integers, attributes);
+      });
     return readInto(block, maxPoints, block.positions, [&](std::span<glm::dvec3> positions, std::byte* attributes) {
       unpackLasRecords(record_, source_.header().scale, batch_.data(), positions, attributes);
-    });
-  }
-  bool readIntegers(PointBlock& block, std::size_t maxPoints) override {
-    return readInto(block, maxPoints, block.integers, [&](std::span<glm::ivec3> integers, std::byte* attributes) {
-      unpackLasRecords(record_, batch_.data(), integers, attributes);
     });
   }
 
@@ -118,6 +121,7 @@ class LazReader final : public PointReader {
 
   const LazSource& source_;
   const LazPart& part_;
+  const bool integers_;
   LasRecordFormat record_;
   std::size_t run_ = 0;  ///< index of the next run
   std::uint64_t runStart_ = 0;
@@ -127,8 +131,8 @@ class LazReader final : public PointReader {
   std::optional<Error> failure_;  ///< thrown once the points before it are handed out
 };
 
-std::unique_ptr<PointReader> LazSource::openPart(std::size_t part) const {
-  return std::make_unique<LazReader>(*this, parts_[part]);
+std::unique_ptr<PointReader> LazSource::open(std::size_t part, bool integers) const {
+  return std::make_unique<LazReader>(*this, parts_[part], integers);
 }
 
 /// Cuts the chunks that hold the first `points` points into parts of about kPartPoints.

@@ -14,69 +14,75 @@
 
 namespace strata {
 
-/// Points as they come out of a reader, positions apart from the packed attribute records.
+/// Points as a reader hands them out: coordinates, and apart from them the attribute records. The coordinates are in
+/// `positions`, or in `integers` when the reader came from PointSource::openIntegers(); the other vector is empty.
 struct PointBlock {
   std::vector<glm::dvec3> positions;  ///< metres, relative to SourceInfo::origin
-  std::vector<glm::ivec3> integers;   ///< instead of positions, where readIntegers() filled the block
-  std::vector<std::byte> attributes;  ///< positions.size() records of SourceInfo::layout.stride() bytes
+  std::vector<glm::ivec3> integers;   ///< as a LAS file stores them; position = LasMeta::scale * integer
+  std::vector<std::byte> attributes;  ///< one record of SourceInfo::layout.stride() bytes for each point
 
   std::size_t count() const { return integers.empty() ? positions.size() : integers.size(); }
 };
 
-/// What is known of one scan before its points are read.
+/// Everything that is known of one scan before its points are read.
 struct SourceInfo {
   std::string path;              ///< as the user gave it; for messages and the store's list of sources
   std::string format;            ///< "LAZ 1.4 format 8", "PLY binary", "synthetic city"
-  std::uint64_t pointCount = 0;  ///< as the header claims, already checked against the file's size
-  bool boundsExact = false;      ///< the header's bounds can be trusted to hold every point (else they are a hint)
+  std::uint64_t pointCount = 0;  ///< as the header claims; already checked against the file's size
+  bool boundsExact = false;      ///< `bounds` hold every point; otherwise they are a hint
   Box bounds;                    ///< world; empty when the format states none
-  glm::dvec3 origin{0.0};        ///< what block positions are relative to (LAS: the header's offset)
-  glm::dvec3 step{0.0};          ///< the source's grid (LAS: its scale factors); for float sources the size of
-                                 ///< the last digit that carries information (text: of its decimals; float32:
-                                 ///< about one ulp of the largest coordinate); 0 = unknown
-  bool gridExact = false;        ///< every position is origin + integer * step
-  bool float64 = false;          ///< coordinates are 64-bit floats on no grid (else, off a grid, they are 32-bit)
+  glm::dvec3 origin{0.0};        ///< world position that block positions are relative to (LAS: the header's offset)
+  /// The step of the source's grid (LAS: its scale factors). Without a grid it is the size of the last digit that
+  /// carries information: about one unit in the last place of the largest coordinate for float32. 0 means unknown.
+  glm::dvec3 step{0.0};
+  bool gridExact = false;  ///< every position is origin + integer * step
+  bool float64 = false;    ///< the coordinates are 64-bit floats without a grid; otherwise, without a grid, 32-bit ones
   PointLayout layout;
   std::string crs;  ///< WKT, or "EPSG:n", or empty
   std::uint64_t fileBytes = 0;
-  std::uint64_t uncompressedBytes = 0;  ///< as plain records; what "input size" means for LAZ
-  std::optional<LasMeta> las;
+  std::uint64_t uncompressedBytes = 0;  ///< as plain records; the "input size" of a LAZ file
+  std::optional<LasMeta> las;           ///< for LAS and LAZ alone
+  std::optional<glm::dvec3> viewpoint;  ///< world position that the sensor stood at, when the file says so (PCD)
 };
 
-/// Reads the points of one part, front to back. Not thread-safe; one thread a reader.
+/// Reads the points of one part, front to back. Each reader belongs to one thread at a time.
 class PointReader {
  public:
   virtual ~PointReader() = default;
-  /// Replaces `block` by the next at most `maxPoints` points; false at the end of the part.
-  /// Throws Error when the file is damaged or ends early; what was returned before stays valid.
+  /// Replaces `block` by the next points, at most `maxPoints`. Returns false at the end of the part. Throws Error when
+  /// the file is damaged or ends early; blocks that were read before stay valid. A block that is read into again must
+  /// come from a reader of the same kind, openPart() or openIntegers().
   virtual bool read(PointBlock& block, std::size_t maxPoints) = 0;
-  /// The same, but the block gets the integers of a LAS file, whose position is origin + LasMeta::scale * integer.
-  /// Only for sources with SourceInfo::las; do not mix with read().
-  virtual bool readIntegers(PointBlock& block, std::size_t maxPoints);
 };
 
-/// One scan. Constructing it reads headers only (text and PLY/PCD may have to look further).
+/// One scan that is open for reading. Opening it reads the headers only, except for text, ascii and compressed files,
+/// which have to be looked through. All members may be called by several threads at once; readers must not outlive it.
 class PointSource {
  public:
   virtual ~PointSource() = default;
   virtual const SourceInfo& info() const = 0;
-  /// Parts can be read at the same time by different threads. Their order and content are fixed.
+  /// Parts can be read at the same time by different threads. Their order and their points never change.
   virtual std::size_t partCount() const = 0;
   virtual std::unique_ptr<PointReader> openPart(std::size_t part) const = 0;
+  /// Like openPart(), but a source with SourceInfo::las hands out PointBlock::integers instead of positions, which
+  /// spares a conversion to metres and back. Any other source hands out positions.
+  virtual std::unique_ptr<PointReader> openIntegers(std::size_t part) const { return openPart(part); }
 };
 
-/// The user asked to stop.
+/// Thrown when the user asked to stop.
 class Stopped : public Error {
  public:
   Stopped() : Error("stopped before the end") {}
 };
 
+/// How scans are opened.
 struct SourceOptions {
-  std::string columns;  ///< text files: "x,y,z,intensity,r,g,b"; empty = detect
-  std::uint64_t memoryBytes = std::uint64_t{2}
-                              << 30;        ///< a source that must hold its file whole refuses beyond a share of this
+  std::string columns;  ///< of text files, as "x,y,z,intensity,r,g,b"; empty to detect them
+  /// Memory of the whole conversion. A source that has to hold its file whole refuses when that takes too large a
+  /// share.
+  std::uint64_t memoryBytes = std::uint64_t{2} << 30;
   const std::atomic<bool>* stop = nullptr;  ///< opening throws Stopped soon after it is set
-  bool skipDamaged = false;                 ///< read what is sound of a damaged file; what is missing counts as skipped
+  bool skipDamaged = false;  ///< damaged files give their undamaged points, and the missing ones count as skipped
 };
 
 }  // namespace strata
