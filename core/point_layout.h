@@ -5,14 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/scalar.h"
+
 namespace strata {
-
-enum class ScalarType : std::uint8_t { u8, i8, u16, i16, u32, i32, u64, i64, f32, f64 };
-
-std::size_t scalarBytes(ScalarType type);
-std::string_view scalarName(ScalarType type);
-/// Throws Error for an unknown name.
-ScalarType parseScalarType(std::string_view name);
 
 /// One named column of the points besides the position.
 struct Attribute {

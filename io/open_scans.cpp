@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <set>
-#include <span>
 #include <string>
 #include <system_error>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/file/byte_source.h"
 #include "io/las/las_source.h"
 #include "io/scan/point_source.h"
@@ -52,37 +51,28 @@ constexpr std::array<UnreadFormat, 3> kUnread{
      {".ptx", "PTX is not read yet; export it as LAS, LAZ or PTS"},
      {".wdp", "this is the waveform data of a LAS file, which holds no points; name the LAS file"}}};
 
-std::string extensionOf(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 const ScanFormat* findFormat(const fs::path& path) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = scanExtension(path.string());
   const auto found = std::find_if(kFormats.begin(), kFormats.end(),
                                   [&](const ScanFormat& format) { return format.extension == extension; });
   return found == kFormats.end() ? nullptr : &*found;
 }
 
 const UnreadFormat* findUnread(const fs::path& path) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = scanExtension(path.string());
   const auto found = std::find_if(kUnread.begin(), kUnread.end(),
                                   [&](const UnreadFormat& format) { return format.extension == extension; });
   return found == kUnread.end() ? nullptr : &*found;
 }
 
-/// The first bytes of the file, at most four. Throws where it is missing or empty.
+/// The first four bytes of the file, fewer if it is shorter. Throws when it is missing, empty or no regular file.
 std::string firstBytes(const std::string& path) {
   std::error_code failure;
   const fs::file_status status = fs::status(path, failure);
   if (fs::exists(status) && !fs::is_regular_file(status)) throw Error(path, "is no regular file");
   const std::unique_ptr<ByteSource> bytes = openFile(path);
   if (bytes->size() == 0) throw Error(path, "the file is empty, found 0 bytes");
-  std::string start(static_cast<std::size_t>(std::min<std::uint64_t>(bytes->size(), 4)), '\0');
-  bytes->read(0, std::as_writable_bytes(std::span(start)));
-  return start;
+  return readBeginning(*bytes, 4);
 }
 
 std::unique_ptr<PointSource> openOne(const std::string& path, const SourceOptions& options) {
@@ -91,7 +81,7 @@ std::unique_ptr<PointSource> openOne(const std::string& path, const SourceOption
     if (const UnreadFormat* unread = findUnread(path)) throw Error(path, std::string(unread->message));
     std::error_code failure;
     if (!fs::exists(path, failure)) firstBytes(path);  // says why it cannot be opened
-    const std::string extension = extensionOf(path);
+    const std::string extension = scanExtension(path);
     throw Error(path, "unknown kind of scan, found extension '" + extension + "' (expected " +
                           std::string(kKnownExtensions) + ")");
   }
@@ -127,6 +117,8 @@ std::vector<std::string> scansBelow(const std::string& folder) {
 }
 
 }  // namespace
+
+std::string scanExtension(const std::string& path) { return lowerCase(fs::path(path).extension().string()); }
 
 std::vector<std::unique_ptr<PointSource>> openScans(const std::vector<std::string>& inputs,
                                                     const SourceOptions& options) {

@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <cctype>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -7,6 +6,7 @@
 #include "converter/programs/command_line.h"
 #include "core/error.h"
 #include "core/program.h"
+#include "io/open_scans.h"
 #include "io/scan/scan_writer.h"
 #include "io/store/node_codec.h"
 #include "io/store/store.h"
@@ -67,16 +67,9 @@ std::uint64_t countWanted(const Store& store, const Filter& filter, Box& bounds)
   return count;
 }
 
-/// In lower case.
-std::string extensionOf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
 std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
                                          const Box& bounds, std::optional<int> lasFormat) {
-  const std::string extension = extensionOf(path);
+  const std::string extension = scanExtension(path);
   if (extension == ".las" || extension == ".laz")
     return createLasWriter(path, info, points, bounds, extension == ".laz", lasFormat);
   return createPlyWriter(path, info, points);
@@ -98,7 +91,7 @@ int run(int argc, char** argv) {
       ->check(CLI::IsMember({0, 1, 2, 3, 6, 7, 8}));
   app.add_flag("--force", force, "replace an existing file");
   if (!parseCommandLine(app, argc, argv)) return 0;
-  const std::string extension = extensionOf(output);
+  const std::string extension = scanExtension(output);
   if (extension != ".las" && extension != ".laz" && extension != ".ply")
     throw UsageError(output, "unknown format, found '" + extension + "' (expected .las, .laz or .ply)");
   if (lasFormat && extension == ".ply") throw UsageError("--format", "is for LAS and LAZ only");

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -44,6 +45,12 @@ class File final : public ByteSource {
 };
 
 }  // namespace
+
+std::string readBeginning(const ByteSource& bytes, std::uint64_t mostBytes) {
+  std::string beginning(static_cast<std::size_t>(std::min(bytes.size(), mostBytes)), '\0');
+  bytes.read(0, std::as_writable_bytes(std::span(beginning)));
+  return beginning;
+}
 
 std::unique_ptr<ByteSource> openFile(const std::string& path) { return std::make_unique<File>(path); }
 

@@ -18,6 +18,9 @@ class ByteSource {
   virtual const std::string& name() const = 0;
 };
 
+/// The first `mostBytes` bytes, or all of a shorter source, as text. Throws as ByteSource::read().
+std::string readBeginning(const ByteSource& bytes, std::uint64_t mostBytes);
+
 /// A file through pread. Throws Error when it cannot be opened.
 std::unique_ptr<ByteSource> openFile(const std::string& path);
 

@@ -1,4 +1,4 @@
-#include "io/table/pcl_source.h"
+#include "io/table/compressed_pcd.h"
 
 #include <pcl/io/lzf.h>
 
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/error.h"
-#include "io/table/field_map.h"
-#include "io/table/record_source.h"
+#include "io/table/record_mapping.h"
+#include "io/table/record_sample.h"
 
 namespace strata {
 namespace {
@@ -66,8 +66,8 @@ Columns unpack(const ByteSource& bytes, const PcdHeader& header, std::uint64_t m
 
 class ColumnsReader final : public PointReader {
  public:
-  ColumnsReader(Columns columns, const PcdHeader& header, const FieldMap& map)
-      : columns_(std::move(columns)), header_(header), map_(map) {}
+  ColumnsReader(Columns columns, const PcdHeader& header, const RecordMapping& mapping)
+      : columns_(std::move(columns)), header_(header), mapping_(mapping) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
     block.positions.clear();
@@ -76,7 +76,7 @@ class ColumnsReader final : public PointReader {
       const auto count = static_cast<std::size_t>(
           std::min<std::uint64_t>({maxPoints - block.count(), kBlockPoints, header_.points - next_}));
       columns_.gather(next_, count, records_);
-      appendRecords(map_, records_.data(), header_.recordBytes, count, block);
+      mapping_.append(records_.data(), header_.recordBytes, count, block);
       next_ += count;
     }
     return block.count() > 0;
@@ -85,7 +85,7 @@ class ColumnsReader final : public PointReader {
  private:
   Columns columns_;
   const PcdHeader& header_;
-  const FieldMap& map_;
+  const RecordMapping& mapping_;
   std::uint64_t next_ = 0;
   std::vector<std::byte> records_;
 };
@@ -103,27 +103,28 @@ class CompressedPcdSource final : public PointSource {
       columns.gather(first, count, records);
       addToSample(sample, header_.fields, records, header_.recordBytes);
     }
-    map_ = FieldMap(bytes_->name(), header_.fields, sample.ranges);
+    mapping_ = RecordMapping(bytes_->name(), header_.fields, sample.ranges);
     info_.path = bytes_->name();
     info_.format = "PCD binary_compressed";
     info_.pointCount = header_.points;
-    describePositions(map_, sample, true, info_);
-    info_.layout = map_.layout();
+    describePositions(mapping_, sample, true, info_);
+    info_.layout = mapping_.layout();
     info_.fileBytes = bytes_->size();
     info_.uncompressedBytes = header_.points * header_.recordBytes;
+    info_.viewpoint = header_.viewpoint;
   }
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override { return header_.points > 0 ? 1 : 0; }
   std::unique_ptr<PointReader> openPart(std::size_t) const override {
-    return std::make_unique<ColumnsReader>(unpack(*bytes_, header_, memoryBytes_), header_, map_);
+    return std::make_unique<ColumnsReader>(unpack(*bytes_, header_, memoryBytes_), header_, mapping_);
   }
 
  private:
   std::unique_ptr<ByteSource> bytes_;
   PcdHeader header_;
   std::uint64_t memoryBytes_;
-  FieldMap map_;
+  RecordMapping mapping_;
   SourceInfo info_;
 };
 

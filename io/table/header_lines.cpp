@@ -18,11 +18,4 @@ void HeaderLines::fail(const std::string& what) const {
   throw Error(file_, "line " + std::to_string(lines_) + ": " + what);
 }
 
-std::string shownWord(std::string_view word) {
-  constexpr std::size_t kShown = 32;
-  std::string text;
-  for (const char c : word.substr(0, kShown)) text += c >= ' ' && c < 127 ? c : '?';
-  return text;
-}
-
 }  // namespace strata

@@ -29,7 +29,4 @@ class HeaderLines {
   std::size_t bytes_ = 0, lines_ = 0;
 };
 
-/// The start of a word, with what cannot be printed as question marks.
-std::string shownWord(std::string_view word);
-
 }  // namespace strata

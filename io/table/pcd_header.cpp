@@ -1,12 +1,13 @@
 #include "io/table/pcd_header.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/table/header_lines.h"
+#include "io/table/text_lines.h"
 
 namespace strata {
 namespace {
@@ -55,9 +56,7 @@ class PcdHeaderParser {
     std::vector<std::uint64_t> values;
     for (const std::string_view word : words) {
       std::uint64_t value = 0;
-      const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (failure != std::errc() || end != word.data() + word.size())
-        lines_.fail("found '" + shownWord(word) + "' (expected a number)");
+      if (!parseWhole(word, value)) lines_.fail("found '" + shownWord(word) + "' (expected a number)");
       values.push_back(value);
     }
     return values;
@@ -70,8 +69,7 @@ class PcdHeaderParser {
       if (axis >= words.size()) return;
       const std::string_view word = words[axis];
       double& value = at[static_cast<int>(axis)];
-      const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (failure != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return;
+      if (!parseWhole(word, value) || !std::isfinite(value)) return;
     }
     if (at != glm::dvec3(0.0)) header_.viewpoint = at;
   }

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "io/table/field_map.h"
+#include "io/table/field.h"
 
 namespace strata {
 
@@ -22,8 +22,8 @@ struct PcdHeader {
   std::size_t recordBytes = 0;
   std::size_t headerBytes = 0;  ///< with the DATA line
   std::uint64_t headerLines = 0;
-  std::optional<glm::dvec3>
-      viewpoint;  ///< where the sensor stood; nothing for 0 0 0, what writers put that do not know
+  /// World position of the sensor; nothing for 0 0 0, which writers put that do not know it.
+  std::optional<glm::dvec3> viewpoint;
 };
 
 /// Reads the header at the start of `head`. Throws Error naming `file`.

@@ -1,14 +1,14 @@
 #include "io/table/pcd_source.h"
 
 #include <algorithm>
-#include <cctype>
-#include <span>
+#include <initializer_list>
 #include <string_view>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/file/byte_source.h"
+#include "io/table/compressed_pcd.h"
 #include "io/table/pcd_header.h"
-#include "io/table/pcl_source.h"
 #include "io/table/record_source.h"
 #include "io/table/text_table.h"
 
@@ -18,13 +18,14 @@ namespace {
 constexpr std::uint64_t kHeadBytes = 1 << 20;
 
 bool isNamed(const Field& field, std::initializer_list<std::string_view> names) {
-  std::string lower;
-  for (const char c : field.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(names.begin(), names.end(), lower) != names.end();
+  return std::find(names.begin(), names.end(), lowerCase(field.name)) != names.end();
 }
 
 std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const PcdHeader& header, bool skipDamaged) {
   TextTable table;
+  table.format = "PCD ascii";
+  table.claimedPoints = header.points;
+  table.viewpoint = header.viewpoint;
   table.skipDamaged = skipDamaged;
   table.begin = header.headerBytes;
   table.firstLine = header.headerLines + 1;
@@ -46,22 +47,14 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
     throw Error(bytes->name(), "the file ends early, found " + std::to_string(found) + " points (expected " +
                                    std::to_string(header.points) + ")");
   TextSurvey survey = surveyText(*bytes, table);
-  return openTextTable(std::move(bytes), std::move(table), std::move(survey), header.points, "PCD ascii");
-}
-
-PcdHeader readHeader(const std::string& path, const ByteSource& bytes) {
-  std::string head(static_cast<std::size_t>(std::min(bytes.size(), kHeadBytes)), '\0');
-  bytes.read(0, std::as_writable_bytes(std::span(head)));
-  return parsePcdHeader(path, head);
+  return openTextTable(std::move(bytes), std::move(table), std::move(survey));
 }
 
 }  // namespace
 
-std::optional<glm::dvec3> pcdViewpoint(const std::string& path) { return readHeader(path, *openFile(path)).viewpoint; }
-
 std::unique_ptr<PointSource> openPcd(const std::string& path, const SourceOptions& options) {
   std::unique_ptr<ByteSource> bytes = openFile(path);
-  const PcdHeader header = readHeader(path, *bytes);
+  const PcdHeader header = parsePcdHeader(path, readBeginning(*bytes, kHeadBytes));
   switch (header.encoding) {
     case PcdEncoding::ascii:
       return openAscii(std::move(bytes), header, options.skipDamaged);
@@ -76,7 +69,8 @@ std::unique_ptr<PointSource> openPcd(const std::string& path, const SourceOption
                                         .recordBytes = header.recordBytes,
                                         .bigEndian = false,
                                         .skipDamaged = options.skipDamaged,
-                                        .fields = header.fields});
+                                        .fields = header.fields,
+                                        .viewpoint = header.viewpoint});
 }
 
 }  // namespace strata

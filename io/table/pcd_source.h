@@ -6,12 +6,9 @@
 
 namespace strata {
 
-/// The points of a PCD file, all of them: those of organised clouds that are not finite come out as they are.
-/// ascii and binary are streamed; binary_compressed has to be unpacked whole (see pcl_source.h).
-/// VIEWPOINT says where the sensor stood; it is not applied to the points, which are in the world's frame already.
+/// Opens a PCD file. All its points come out, also those of organised clouds that are not finite. Files that are ascii
+/// or binary are streamed; binary_compressed ones have to be unpacked whole (compressed_pcd.h). The header's VIEWPOINT
+/// becomes SourceInfo::viewpoint but is not applied to the points, whose coordinates are world coordinates already.
 std::unique_ptr<PointSource> openPcd(const std::string& path, const SourceOptions& options);
-
-/// Where the header says that the sensor stood, in the world; nothing where it does not say. Throws Error.
-std::optional<glm::dvec3> pcdViewpoint(const std::string& path);
 
 }  // namespace strata

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/table/header_lines.h"
+#include "io/table/text_lines.h"
 
 namespace strata {
 namespace {
@@ -73,8 +74,7 @@ class PlyHeaderParser {
     if (words_.size() < 3) lines_.fail("found an element without name and count");
     PlyElement element;
     element.name = words_[1];
-    const auto [end, failure] = std::from_chars(words_[2].data(), words_[2].data() + words_[2].size(), element.count);
-    if (failure != std::errc() || end != words_[2].data() + words_[2].size())
+    if (!parseWhole(words_[2], element.count))
       lines_.fail("found '" + shownWord(words_[2]) + "' (expected the number of elements)");
     header_.elements.push_back(std::move(element));
   }

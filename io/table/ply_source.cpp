@@ -1,12 +1,12 @@
 #include "io/table/ply_source.h"
 
 #include <algorithm>
-#include <cctype>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/file/byte_source.h"
 #include "io/table/ply_header.h"
 #include "io/table/record_source.h"
@@ -70,8 +70,8 @@ class ListWalker {
 };
 
 bool isAxis(const std::string& name) {
-  return name.size() == 1 &&
-         std::string_view("xyz").find(static_cast<char>(std::tolower(name[0]))) != std::string_view::npos;
+  const std::string lower = lowerCase(name);
+  return lower == "x" || lower == "y" || lower == "z";
 }
 
 std::unique_ptr<PointSource> openBinary(std::unique_ptr<ByteSource> bytes, const PlyHeader& header, bool skipDamaged) {
@@ -108,6 +108,7 @@ std::unique_ptr<PointSource> openBinary(std::unique_ptr<ByteSource> bytes, const
 
 std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const PlyHeader& header, bool skipDamaged) {
   TextTable table;
+  table.format = "PLY ascii";
   table.skipDamaged = skipDamaged;
   table.begin = header.headerBytes;
   table.firstLine = header.headerLines + 1;
@@ -116,6 +117,7 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
     if (!header.elements[i].properties.empty())
       table.begin = skipLines(*bytes, table.begin, header.elements[i].count, found, table.firstLine);
   const PlyElement& vertex = header.elements[header.vertex];
+  table.claimedPoints = vertex.count;
   std::uint64_t line = table.firstLine;
   table.end = skipLines(*bytes, table.begin, vertex.count, found, line);
   if (found < vertex.count && !skipDamaged)
@@ -132,16 +134,14 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
   }
   packFields(table);
   TextSurvey survey = surveyText(*bytes, table);
-  return openTextTable(std::move(bytes), std::move(table), std::move(survey), vertex.count, "PLY ascii");
+  return openTextTable(std::move(bytes), std::move(table), std::move(survey));
 }
 
 }  // namespace
 
 std::unique_ptr<PointSource> openPly(const std::string& path, const SourceOptions& options) {
   std::unique_ptr<ByteSource> bytes = openFile(path);
-  std::string head(static_cast<std::size_t>(std::min(bytes->size(), kHeadBytes)), '\0');
-  bytes->read(0, std::as_writable_bytes(std::span(head)));
-  const PlyHeader header = parsePlyHeader(path, head);
+  const PlyHeader header = parsePlyHeader(path, readBeginning(*bytes, kHeadBytes));
   return header.encoding == PlyEncoding::ascii ? openAscii(std::move(bytes), header, options.skipDamaged)
                                                : openBinary(std::move(bytes), header, options.skipDamaged);
 }

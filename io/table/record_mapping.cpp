@@ -1,21 +1,22 @@
-#include "io/table/field_map.h"
+#include "io/table/record_mapping.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <string_view>
+#include <cstring>
+#include <utility>
 
 #include "core/error.h"
+#include "core/text.h"
+#include "io/table/intensity_scale.h"
 
 namespace strata {
 namespace {
 
 /// Lower case without underscores and a leading `scalar_`.
 std::string plainName(std::string_view name) {
-  std::string plain;
-  for (const char c : name)
-    if (c != '_') plain += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string plain = lowerCase(name);
+  std::erase(plain, '_');
   if (plain.starts_with("scalar") && plain.size() > 6) plain.erase(0, 6);
   return plain;
 }
@@ -38,30 +39,7 @@ constexpr std::array<Known, 10> kKnown{{{attribute::kNir, ScalarType::u16},
 
 bool isFloat(ScalarType type) { return type == ScalarType::f32 || type == ScalarType::f64; }
 
-double powerOfTenAtMost(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
-
 }  // namespace
-
-void FieldRange::add(double value) {
-  if (!std::isfinite(value)) return;
-  min = std::min(min, value);
-  max = std::max(max, value);
-}
-
-void FieldRange::add(const FieldRange& other) {
-  min = std::min(min, other.min);
-  max = std::max(max, other.max);
-}
-
-IntensityScale intensityScale(const FieldRange& range) {
-  if (range.empty()) return {};
-  if (range.min >= 0.0 && range.max <= 1.0) return {0.0, 65535.0};
-  if (range.min >= 0.0 && range.max <= 255.0) return {0.0, 257.0};
-  if (range.min >= 0.0 && range.max <= 65535.0) return {0.0, 1.0};
-  if (range.min >= -2048.0 && range.max <= 2047.0) return {2048.0, 16.0};
-  const double span = range.max - range.min;
-  return {-range.min, span > 0.0 && std::isfinite(span) ? 65535.0 / span : 1.0};
-}
 
 std::optional<ScalarType> knownFieldType(std::string_view name) {
   const std::string plain = plainName(name);
@@ -75,50 +53,16 @@ std::optional<ScalarType> knownFieldType(std::string_view name) {
   return std::nullopt;
 }
 
-AxisFields findAxes(std::span<const Field> fields) {
-  AxisFields axes;
-  for (std::size_t i = 0; i < fields.size(); ++i)
-    for (int axis = 0; axis < 3; ++axis)
-      if (axes.index[axis] < 0 && fields[i].count == 1 && fields[i].name.size() == 1 &&
-          std::tolower(static_cast<unsigned char>(fields[i].name[0])) == "xyz"[axis])
-        axes.index[axis] = static_cast<int>(i);
-  return axes;
-}
-
-double float32Step(double largest) {
-  if (!(largest > 0.0)) return 0.0;
-  const double ulp = std::ldexp(1.0, std::max(std::ilogb(largest), -126) - 23);
-  return powerOfTenAtMost(ulp * 0.5);
-}
-
-double float64Step(const Box& bounds) {
-  if (bounds.empty()) return 0.0;
-  const glm::dvec3 size = bounds.size();
-  const glm::dvec3 reach = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-  double length = std::max({size.x, size.y, size.z});
-  if (length <= 0.0) length = std::max({reach.x, reach.y, reach.z});
-  if (!(length > 0.0)) return 0.0;
-  return std::max(1e-9, powerOfTenAtMost(length * 1e-9 * (1.0 + 1e-12)));
-}
-
-glm::dvec3 fillSteps(glm::dvec3 step) {
-  double coarsest = std::max({step.x, step.y, step.z});
-  if (coarsest <= 0.0) coarsest = 0.001;
-  for (int axis = 0; axis < 3; ++axis)
-    if (step[axis] <= 0.0) step[axis] = coarsest;
-  return step;
-}
-
-/// Collects attributes and steps; the offsets within the record follow once the order is known.
-class FieldMapBuilder {
+/// Collects attributes and steps. Where an attribute lies in the record is known only when all of them are.
+class RecordMappingBuilder {
  public:
-  FieldMapBuilder(std::span<const Field> fields, std::span<const FieldRange> ranges, FieldMap& map)
-      : fields_(fields), ranges_(ranges), used_(fields.size(), false), map_(map) {}
+  RecordMappingBuilder(std::span<const Field> fields, std::span<const FieldRange> ranges, RecordMapping& mapping)
+      : fields_(fields), ranges_(ranges), used_(fields.size(), false), mapping_(mapping) {}
 
   void build(const AxisFields& axes) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto index = static_cast<std::size_t>(axes.index[axis]);
-      map_.axes_[axis] = fields_[index];
+      mapping_.axes_[axis] = fields_[index];
       used_[index] = true;
     }
     addColour();
@@ -152,7 +96,7 @@ class FieldMapBuilder {
   void add(std::string_view name, ScalarType type, std::uint16_t components) {
     attributes_.push_back({.name = std::string(name), .type = type, .components = components, .description = {}});
   }
-  /// `within` = bytes from the start of the attribute added last.
+  /// Copies into the attribute added last, `within` bytes behind its start.
   void copy(std::size_t from, std::size_t bytes, std::size_t within = 0) {
     pending_.push_back({attributes_.size() - 1, {.from = from, .to = within, .copyBytes = bytes}});
   }
@@ -262,16 +206,16 @@ class FieldMapBuilder {
   }
 
   void finish() {
-    map_.layout_ = PointLayout(std::move(attributes_));
+    mapping_.layout_ = PointLayout(std::move(attributes_));
     for (Pending& pending : pending_) {
-      pending.step.to += map_.layout_.offset(pending.attribute);
-      map_.steps_.push_back(pending.step);
+      pending.step.to += mapping_.layout_.offset(pending.attribute);
+      mapping_.steps_.push_back(pending.step);
     }
   }
 
   struct Pending {
     std::size_t attribute;
-    FieldMap::Step step;  ///< `to` counts from the attribute's own start
+    RecordMapping::Step step;  ///< `to` counts from the attribute's own start
   };
 
   std::span<const Field> fields_;
@@ -279,17 +223,23 @@ class FieldMapBuilder {
   std::vector<bool> used_;
   std::vector<Attribute> attributes_;
   std::vector<Pending> pending_;
-  FieldMap& map_;
+  RecordMapping& mapping_;
 };
 
-FieldMap::FieldMap(const std::string& file, std::span<const Field> fields, std::span<const FieldRange> ranges) {
+RecordMapping::RecordMapping(const std::string& file, std::span<const Field> fields,
+                             std::span<const FieldRange> ranges) {
   const AxisFields axes = findAxes(fields);
   for (int axis = 0; axis < 3; ++axis)
     if (axes.index[axis] < 0) throw Error(file, std::string("its points have no field ") + "xyz"[axis]);
-  FieldMapBuilder(fields, ranges, *this).build(axes);
+  RecordMappingBuilder(fields, ranges, *this).build(axes);
 }
 
-void FieldMap::attributes(const std::byte* record, std::byte* out) const {
+glm::dvec3 RecordMapping::position(const std::byte* record) const {
+  return {loadScalar(record + axes_[0].offset, axes_[0].type), loadScalar(record + axes_[1].offset, axes_[1].type),
+          loadScalar(record + axes_[2].offset, axes_[2].type)};
+}
+
+void RecordMapping::attributes(const std::byte* record, std::byte* out) const {
   for (const Step& step : steps_) {
     if (step.copyBytes > 0) {
       std::memcpy(out + step.to, record + step.from, step.copyBytes);
@@ -299,6 +249,19 @@ void FieldMap::attributes(const std::byte* record, std::byte* out) const {
     const double top = step.toType == ScalarType::u8 ? 255.0 : 65535.0;
     const auto stored = static_cast<std::uint16_t>(value > 0.0 ? std::min(value, top) : 0.0);  // NaN gives 0
     std::memcpy(out + step.to, &stored, scalarBytes(step.toType));
+  }
+}
+
+void RecordMapping::append(const std::byte* records, std::size_t recordBytes, std::size_t count,
+                           PointBlock& block) const {
+  const std::size_t stride = layout_.stride();
+  const std::size_t before = block.count();
+  block.positions.resize(before + count);
+  block.attributes.resize((before + count) * stride);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::byte* record = records + i * recordBytes;
+    block.positions[before + i] = position(record);
+    if (stride > 0) attributes(record, block.attributes.data() + (before + i) * stride);
   }
 }
 

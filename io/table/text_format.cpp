@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "io/table/text_lines.h"
 
 namespace strata {
@@ -54,12 +55,6 @@ constexpr std::array<Alias, 12> kAliases{{{"easting", "x"},
                                           {"gpstime", "gps_time"},
                                           {"returnnumber", "return_number"},
                                           {"numberofreturns", "number_of_returns"}}};
-
-std::string lowerCase(std::string_view text) {
-  std::string lower;
-  for (const char c : text) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return lower;
-}
 
 /// `X [m]` is x; names that nobody knows stay as they are.
 std::string columnName(std::string_view written) {

@@ -1,13 +1,14 @@
 #include "io/table/text_lines.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "core/error.h"
+#include "core/text.h"
 
 namespace strata {
 namespace {
@@ -19,8 +20,7 @@ bool isDigit(char c) { return c >= '0' && c <= '9'; }
 template <typename T>
 bool parse(std::string_view token, T& value) {
   if (token.starts_with('+')) token.remove_prefix(1);
-  const auto [end, failure] = std::from_chars(token.data(), token.data() + token.size(), value);
-  return failure == std::errc() && end == token.data() + token.size() && !token.empty();
+  return parseWhole(token, value);
 }
 
 template <typename T>
@@ -115,33 +115,24 @@ void splitColumns(std::string_view line, std::vector<std::string_view>& tokens) 
   }
 }
 
+std::string shownWord(std::string_view word) {
+  constexpr std::size_t kShown = 32;
+  std::string text;
+  for (const char c : word.substr(0, kShown)) text += c >= ' ' && c < 127 ? c : '?';
+  return text;
+}
+
 bool parseNumber(std::string_view token, double& value) { return parse(token, value); }
 bool parseInteger(std::string_view token, std::int64_t& value) { return parse(token, value); }
 
 bool storeNumber(std::string_view token, ScalarType type, std::byte* out) {
-  switch (type) {
-    case ScalarType::u8:
-      return storeInteger<std::uint8_t>(token, out);
-    case ScalarType::i8:
-      return storeInteger<std::int8_t>(token, out);
-    case ScalarType::u16:
-      return storeInteger<std::uint16_t>(token, out);
-    case ScalarType::i16:
-      return storeInteger<std::int16_t>(token, out);
-    case ScalarType::u32:
-      return storeInteger<std::uint32_t>(token, out);
-    case ScalarType::i32:
-      return storeInteger<std::int32_t>(token, out);
-    case ScalarType::u64:
-      return storeInteger<std::uint64_t>(token, out);
-    case ScalarType::i64:
-      return storeInteger<std::int64_t>(token, out);
-    case ScalarType::f32:
-      return storeFloat<float>(token, out);
-    case ScalarType::f64:
-      return storeFloat<double>(token, out);
-  }
-  return false;
+  return withScalarType(type, [&](auto zero) {
+    using T = decltype(zero);
+    if constexpr (std::is_floating_point_v<T>)
+      return storeFloat<T>(token, out);
+    else
+      return storeInteger<T>(token, out);
+  });
 }
 
 LineKind lineKind(std::string_view line, const TextTable& table) {
@@ -200,11 +191,9 @@ std::string LineParser::fault() const {
     return "found " + std::to_string(tokens_.size()) + " columns (expected " + std::to_string(table_.columns.size()) +
            ")";
   const auto c = static_cast<std::size_t>(badColumn_);
-  std::string shown;
-  for (const char letter : picked_[c].substr(0, 32)) shown += letter >= ' ' && letter < 127 ? letter : '?';
   const ScalarType type = table_.fields[table_.columns[c].field].type;
   const bool real = type == ScalarType::f32 || type == ScalarType::f64;
-  return "column " + std::to_string(c + 1) + ": found '" + shown + "' (expected " +
+  return "column " + std::to_string(c + 1) + ": found '" + shownWord(picked_[c]) + "' (expected " +
          (real ? "a number" : "a value of type " + std::string(scalarName(type))) + ")";
 }
 

@@ -42,6 +42,9 @@ class LineReader {
 /// token are taken off; blanks and separators within them belong to it. Empty tokens stand between neighbouring commas.
 void splitColumns(std::string_view line, std::vector<std::string_view>& tokens);
 
+/// The first 32 letters of a word for a message, with a question mark for each that cannot be printed.
+std::string shownWord(std::string_view word);
+
 /// A token as a number; false where it is none. A leading + is allowed, as are nan and inf.
 bool parseNumber(std::string_view token, double& value);
 bool parseInteger(std::string_view token, std::int64_t& value);

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "io/file/byte_source.h"
+#include "io/table/record_mapping.h"
 #include "io/table/text_format.h"
 #include "io/table/text_table.h"
 
@@ -80,11 +81,10 @@ std::string formatName(const std::string& path) {
 
 std::unique_ptr<PointSource> openText(const std::string& path, const SourceOptions& options) {
   std::unique_ptr<ByteSource> bytes = openFile(path);
-  std::string head(static_cast<std::size_t>(std::min<std::uint64_t>(bytes->size(), kHeadBytes)), '\0');
-  bytes->read(0, std::as_writable_bytes(std::span(head)));
-  const TextFormat format = detectTextFormat(path, head, options.columns);
+  const TextFormat format = detectTextFormat(path, readBeginning(*bytes, kHeadBytes), options.columns);
 
   TextTable table;
+  table.format = formatName(path);
   for (const std::string& name : format.columns) {
     const bool skipped = name == "-";
     table.columns.push_back({skipped ? TextColumn::Kind::skip : TextColumn::Kind::value, table.fields.size()});
@@ -109,7 +109,7 @@ std::unique_ptr<PointSource> openText(const std::string& path, const SourceOptio
   }
   matchColours(table.fields);
   packFields(table);
-  return openTextTable(std::move(bytes), std::move(table), std::move(survey), 0, formatName(path));
+  return openTextTable(std::move(bytes), std::move(table), std::move(survey));
 }
 
 }  // namespace strata

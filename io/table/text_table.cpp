@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "io/table/record_source.h"
+#include "io/table/coordinate_step.h"
+#include "io/table/record_mapping.h"
 #include "io/table/text_lines.h"
 
 namespace strata {
@@ -14,8 +15,13 @@ constexpr int kMostDecimals = 9;  ///< of a grid
 
 class TextReader final : public PointReader {
  public:
-  TextReader(const ByteSource& bytes, const TextTable& table, const FieldMap& map, const TextPart& part)
-      : bytes_(bytes), table_(table), map_(map), part_(part), lines_(bytes, part.begin, part.end), parser_(table) {}
+  TextReader(const ByteSource& bytes, const TextTable& table, const RecordMapping& mapping, const TextPart& part)
+      : bytes_(bytes),
+        table_(table),
+        mapping_(mapping),
+        part_(part),
+        lines_(bytes, part.begin, part.end),
+        parser_(table) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
     block.positions.clear();
@@ -24,7 +30,7 @@ class TextReader final : public PointReader {
     while (block.count() < maxPoints && lines_.next(line)) {
       if (lineKind(line, table_) != LineKind::point) continue;
       if (parser_.parse(line))
-        appendRecords(map_, parser_.record().data(), table_.recordBytes, 1, block);
+        mapping_.append(parser_.record().data(), table_.recordBytes, 1, block);
       else if (!table_.skipDamaged)
         throw Error(bytes_.name(),
                     "line " + std::to_string(part_.firstLine + lines_.count() - 1) + ": " + parser_.fault());
@@ -35,7 +41,7 @@ class TextReader final : public PointReader {
  private:
   const ByteSource& bytes_;
   const TextTable& table_;
-  const FieldMap& map_;
+  const RecordMapping& mapping_;
   TextPart part_;
   LineReader lines_;
   LineParser parser_;
@@ -43,26 +49,26 @@ class TextReader final : public PointReader {
 
 class TextTableSource final : public PointSource {
  public:
-  TextTableSource(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey, std::uint64_t claimedPoints,
-                  std::string format)
+  TextTableSource(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey)
       : bytes_(std::move(bytes)), table_(std::move(table)), parts_(std::move(survey.parts)) {
     std::erase_if(parts_, [](const TextPart& part) { return part.points == 0; });
-    map_ = FieldMap(bytes_->name(), table_.fields, fieldRanges(survey));
+    mapping_ = RecordMapping(bytes_->name(), table_.fields, fieldRanges(survey));
     info_.path = bytes_->name();
-    info_.format = std::move(format);
-    info_.pointCount = std::max(survey.points + survey.damaged, claimedPoints);
+    info_.format = table_.format;
+    info_.pointCount = std::max(survey.points + survey.damaged, table_.claimedPoints);
     info_.boundsExact = true;
     info_.bounds = survey.bounds;
-    info_.layout = map_.layout();
+    info_.layout = mapping_.layout();
     info_.fileBytes = bytes_->size();
     info_.uncompressedBytes = bytes_->size();
+    info_.viewpoint = table_.viewpoint;
     setGrid(survey);
   }
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override { return parts_.size(); }
   std::unique_ptr<PointReader> openPart(std::size_t part) const override {
-    return std::make_unique<TextReader>(*bytes_, table_, map_, parts_.at(part));
+    return std::make_unique<TextReader>(*bytes_, table_, mapping_, parts_.at(part));
   }
 
  private:
@@ -95,16 +101,14 @@ class TextTableSource final : public PointSource {
   std::unique_ptr<ByteSource> bytes_;
   TextTable table_;
   std::vector<TextPart> parts_;
-  FieldMap map_;
+  RecordMapping mapping_;
   SourceInfo info_;
 };
 
 }  // namespace
 
-std::unique_ptr<PointSource> openTextTable(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey,
-                                           std::uint64_t claimedPoints, std::string format) {
-  return std::make_unique<TextTableSource>(std::move(bytes), std::move(table), std::move(survey), claimedPoints,
-                                           std::move(format));
+std::unique_ptr<PointSource> openTextTable(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey) {
+  return std::make_unique<TextTableSource>(std::move(bytes), std::move(table), std::move(survey));
 }
 
 void packFields(TextTable& table) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,7 +11,7 @@
 #include "core/box.h"
 #include "io/file/byte_source.h"
 #include "io/scan/point_source.h"
-#include "io/table/field_map.h"
+#include "io/table/field.h"
 
 namespace strata {
 
@@ -29,6 +30,7 @@ struct TextColumn {
 
 /// Points as lines of numbers within a file: the body of text scans and of ascii PLY and PCD.
 struct TextTable {
+  std::string format;               ///< for SourceInfo
   std::vector<TextColumn> columns;  ///< a line may have more, they are ignored
   std::vector<Field> fields;        ///< of the record that a line becomes
   std::size_t recordBytes = 0;
@@ -38,7 +40,9 @@ struct TextTable {
   bool skipDamaged = false;  ///< lines that cannot be read are left out instead of refused
   std::uint64_t begin = 0;   ///< bytes of the file, both at line starts
   std::uint64_t end = 0;
-  std::uint64_t firstLine = 1;  ///< number of the line at `begin`
+  std::uint64_t firstLine = 1;          ///< number of the line at `begin`
+  std::uint64_t claimedPoints = 0;      ///< as a header says; 0 when none does
+  std::optional<glm::dvec3> viewpoint;  ///< for SourceInfo
 };
 
 /// The range of bytes that one reader takes, at line starts.
@@ -71,10 +75,9 @@ struct TextSurvey {
 /// A count line that promises another number of points than follow is an error too.
 TextSurvey surveyText(const ByteSource& bytes, const TextTable& table);
 
-/// A source over a table whose fields are set. Takes over the survey made of it. `claimedPoints` is what a header says
-/// (0 = it says nothing); what is missing of them stays in SourceInfo::pointCount, as do damaged lines.
-std::unique_ptr<PointSource> openTextTable(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey,
-                                           std::uint64_t claimedPoints, std::string format);
+/// Opens a table whose fields are set as a source; `survey` is surveyText() of it. SourceInfo::pointCount counts
+/// damaged lines too, and is TextTable::claimedPoints when that is more.
+std::unique_ptr<PointSource> openTextTable(std::unique_ptr<ByteSource> bytes, TextTable table, TextSurvey survey);
 
 /// Gives fields their offsets, packed in order, and the table its recordBytes.
 void packFields(TextTable& table);

@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+#include "core/scalar.h"
 #include "io/scan/point_source.h"
-#include "io/table/field_map.h"
 #include "tests/support/test_data.h"
 
 namespace strata::test {

@@ -80,7 +80,7 @@ const std::map<std::string_view, WingRule> kRules{
       {"POSIX", "CLI11", "nlohmann"}}},
 
     {"viewer/camera", {{"core", "io/file", "io/store"}, {"nlohmann"}}},
-    {"viewer/tools", {{"core", "io/store", "io/table", "render/picture", "viewer/camera"}, {"nlohmann"}}},
+    {"viewer/tools", {{"core", "io/store", "render/picture", "viewer/camera"}, {"nlohmann"}}},
     {"viewer/session",
      {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "render/picture",
        "render/progressive", "viewer/camera", "viewer/tools"},

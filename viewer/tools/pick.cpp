@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "core/error.h"
+#include "core/scalar.h"
 #include "io/store/node_codec.h"
-#include "io/table/field_map.h"
 
 namespace strata {
 namespace {

@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "core/readable.h"
+#include "core/scalar.h"
 #include "io/store/node_codec.h"
-#include "io/table/field_map.h"
 #include "viewer/tools/pick.h"
 
 namespace strata {
