@@ -2,11 +2,13 @@
 #include <cstdint>
 #include <string>
 
-#include "io/store/store.h"
+#include "io/file/byte_source.h"
+#include "io/store/hierarchy.h"
+#include "io/store/store_info.h"
 
 namespace strata {
 
-/// The three files of a store and their headers (docs/format.md).
+/// The three files of a store, and the headers of the two binary ones, as docs/format.md describes them.
 inline constexpr const char* kInfoFile = "store.json";
 inline constexpr const char* kHierarchyFile = "hierarchy.bin";
 inline constexpr const char* kPointsFile = "points.bin";
@@ -33,12 +35,19 @@ struct PointsHeader {
 #pragma pack(pop)
 static_assert(sizeof(HierarchyHeader) == 64 && sizeof(PointsHeader) == 16);
 
-/// The header that points.bin starts with; the first payload stands right behind it.
+/// The header at the start of points.bin; the first payload follows it.
 PointsHeader pointsHeader();
+/// Throws Error unless `points` starts with such a header.
+void checkPointsHeader(const ByteSource& points);
 
 /// Writes store.json and hierarchy.bin into `folder` and makes them durable.
 void writeStoreFiles(const std::string& folder, const StoreInfo& info, const Hierarchy& hierarchy,
                      std::uint64_t pointsBytes);
+
+/// Reads hierarchy.bin of the store in `folder`. Throws Error when it is damaged or does not belong to `json`, the text
+/// of store.json, whose contents are `info`, or to a points.bin of `pointsBytes` bytes.
+Hierarchy readHierarchy(const std::string& folder, const StoreInfo& info, const std::string& json,
+                        std::uint64_t pointsBytes);
 
 /// Throws Error naming `file` unless the records form one tree in breadth-first order whose payloads lie in points.bin.
 void checkHierarchy(const std::string& file, const Hierarchy& hierarchy, std::uint64_t pointsBytes);

@@ -1,8 +1,9 @@
-#include <array>
+#include "io/store/store_info.h"
+
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
-#include "io/store/store.h"
 
 namespace strata {
 namespace {
@@ -109,6 +110,11 @@ StoreInfo fromJson(const Json& j) {
 }
 
 }  // namespace
+
+Box StoreInfo::rootCube() const {
+  const double steps = std::ldexp(1.0, cubeBits);
+  return {grid.offset, grid.offset + grid.scale * steps};
+}
 
 std::string storeInfoJson(const StoreInfo& info) {
   Json sources = Json::array();
