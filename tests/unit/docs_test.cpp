@@ -172,6 +172,50 @@ TEST(Documents, EveryFileThatIsNamedExists) {
   EXPECT_GT(checked, 30u) << "the names of files are not being found";
 }
 
+/// All words of the sources and scripts that have the form of an identifier.
+const std::set<std::string>& identifiers() {
+  static const std::set<std::string> words = [] {
+    static const std::set<std::string> endings{".h", ".cpp", ".glsl", ".comp", ".vert", ".frag"};
+    std::set<std::string> found;
+    for (const std::string& file : repositoryFiles()) {
+      if (!endings.contains(fs::path(file).extension().string())) continue;
+      std::ifstream in(test::sourceFolder() / file);
+      std::string word;
+      for (char c = 0; in.get(c);) {
+        if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
+          word += c;
+        } else if (!word.empty()) {
+          found.insert(word);
+          word.clear();
+        }
+      }
+      found.insert(word);
+    }
+    return found;
+  }();
+  return words;
+}
+
+/// True for `Type::member`, `function()` and `CamelCase`.
+bool namesCode(const std::string& span) {
+  static const std::regex code(R"((\w+::)+\w+(\(\))?|\w+\(\)|[A-Z][a-z0-9]+([A-Z][a-z0-9]*)+)");
+  return std::regex_match(span, code);
+}
+
+TEST(Documents, EveryTypeAndFunctionThatIsNamedExists) {
+  static const std::regex identifier(R"(\w+)");
+  std::size_t checked = 0;
+  for (const std::string& page : documents())
+    for (const Line& line : linesOfPage(page))
+      for (const std::string& span : codeSpans(line.text)) {
+        if (!namesCode(span)) continue;
+        for (std::sregex_iterator at(span.begin(), span.end(), identifier), end; at != end; ++at)
+          EXPECT_TRUE(identifiers().contains(at->str())) << page << ":" << line.number << ": " << span;
+        ++checked;
+      }
+  EXPECT_GT(checked, 60u) << "the names of types and functions are not being found";
+}
+
 TEST(Documents, NoLineIsWiderThan120ColumnsOutsideOfTablesAndCode) {
   for (const std::string& page : documents())
     for (const Line& line : linesOfPage(page))
@@ -186,6 +230,11 @@ TEST(Documents, TheChecksSeeWhatIsWrong) {
   EXPECT_FALSE(namesAFile("store.json"));
   EXPECT_FALSE(namesAFile("LevelOrder::kAll"));
   EXPECT_FALSE(namesAFile("tiles/"));
+  EXPECT_TRUE(namesCode("LevelOrder::kAll") && namesCode("selectNodes()") && namesCode("NodeCache"));
+  EXPECT_FALSE(namesCode("points") || namesCode("--memory") || namesCode("GL_POINTS"));
+  EXPECT_FALSE(
+      identifiers().contains("NoSuch"
+                             "Type"));
   EXPECT_TRUE(exists("core/box.h", "docs"));
   EXPECT_TRUE(exists("box.h", "docs"));
   EXPECT_TRUE(exists("flood_*.comp", "docs"));

@@ -1,4 +1,4 @@
-// Who may include whom. The rules are those of docs/architecture.md; this file is where they are enforced.
+// Who may include whom. docs/architecture.md shows the same table, and a test compares the two.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -304,6 +304,40 @@ TEST(Wings, TheCheckAllowsWhatTheDesignAllows) {
   EXPECT_EQ(objection("converter/build/merge.cpp", "tbb/parallel_for.h"), "");
   EXPECT_EQ(objection("viewer/window/window.cpp", "GLFW/glfw3.h"), "");
   EXPECT_EQ(objection("viewer/window/viewer_app.cpp", "lod/streamer.h"), "");
+}
+
+/// The wings that a row of docs/architecture.md names, in full: "file" in the row of io/las is io/file.
+Names wingsNamed(std::string_view wing, const std::string& cell) {
+  static const std::regex name(R"re([\w/]+)re");
+  const std::string folder(wing.substr(0, wing.find('/')));
+  Names named;
+  for (std::sregex_iterator at(cell.begin(), cell.end(), name), end; at != end; ++at) {
+    const auto neighbour = kRules.find(folder + "/" + at->str());
+    const auto rule = neighbour != kRules.end() ? neighbour : kRules.find(at->str());
+    if (rule != kRules.end())
+      named.insert(rule->first);
+    else
+      ADD_FAILURE() << wing << " names " << at->str() << ", which is no wing";
+  }
+  return named;
+}
+
+TEST(Wings, TheArchitecturePageHasTheSameTable) {
+  static const std::regex row(R"re(^\| `([\w/]+)` \| [^|]+ \| ([^|]+) \|$)re");
+  std::ifstream page(test::sourceFolder() / "docs/architecture.md");
+  Names found;
+  std::smatch match;
+  for (std::string line; std::getline(page, line);) {
+    if (!std::regex_match(line, match, row)) continue;
+    const auto rule = kRules.find(match[1].str());
+    ASSERT_NE(rule, kRules.end()) << "docs/architecture.md has a row for " << match[1] << ", which is no wing";
+    found.insert(rule->first);
+    Names allowed = rule->second.wings;
+    allowed.erase("core");  // which the page leaves out
+    EXPECT_EQ(match[2] == "-" ? Names{} : wingsNamed(rule->first, match[2]), allowed) << rule->first;
+  }
+  for (const auto& [wing, rule] : kRules)
+    EXPECT_TRUE(found.contains(wing)) << "docs/architecture.md has no row for " << wing;
 }
 
 TEST(Sources, NoFileIsLongerThanSevenHundredLines) {
