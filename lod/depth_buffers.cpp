@@ -5,19 +5,19 @@
 namespace strata {
 
 const CoarseDepth& DepthBuffers::publish() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   std::swap(front_, back_);
   return *front_;
 }
 
 bool DepthBuffers::hides(const View& view, const Contour& contour, double reach) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return front_->view() == view && front_->hides(contour, reach);
 }
 
 void DepthBuffers::copy(std::vector<float>& depths) const {
   depths.clear();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   for (int row = 0; row < CoarseDepth::kSide; ++row)
     for (int column = 0; column < CoarseDepth::kSide; ++column)
       depths.push_back(static_cast<float>(front_->depth(column, row)));

@@ -8,7 +8,7 @@ void FailedNodes::add(std::uint32_t node, const std::string& reason) {
   bool first = false;
   std::size_t nodes = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     Failure& failure = byNode_[node];
     first = failure.attempts == 0;
     auto wait = firstRetry_;
@@ -25,25 +25,25 @@ void FailedNodes::add(std::uint32_t node, const std::string& reason) {
 }
 
 void FailedNodes::copyIfNewer(ByNode& failures, std::uint64_t& version) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (version == failures_) return;
   version = failures_;
   failures = byNode_;
 }
 
 std::uint64_t FailedNodes::failures() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return failures_;
 }
 
 bool FailedNodes::mustWait(std::uint32_t node) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = byNode_.find(node);
   return found != byNode_.end() && found->second.mustWait(Clock::now());
 }
 
 std::uint64_t FailedNodes::givenUp() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return givenUp_;
 }
 

@@ -5,7 +5,7 @@
 namespace strata {
 namespace {
 
-/// Ties go to the lower index, which in breadth-first order is the parent.
+/// Of two equal priorities the lower index is more urgent: in breadth-first order it is the parent.
 bool lessUrgent(const LoadRequest& a, const LoadRequest& b) {
   if (a.ahead != b.ahead) return a.ahead;
   if (a.priority != b.priority) return a.priority < b.priority;
@@ -17,7 +17,7 @@ bool lessUrgent(const LoadRequest& a, const LoadRequest& b) {
 void LoadQueue::replace(std::vector<LoadRequest>& requests) {
   std::sort(requests.begin(), requests.end(), lessUrgent);
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     requests_.swap(requests);
   }
   changed_.notify_all();
@@ -25,8 +25,9 @@ void LoadQueue::replace(std::vector<LoadRequest>& requests) {
 }
 
 LoadQueue::Iterator LoadQueue::mostUrgent() {
-  const auto free = std::find_if(requests_.rbegin(), requests_.rend(),
-                                 [this](const LoadRequest& request) { return !isInFlight(request.node); });
+  const auto free =
+      std::find_if(requests_.rbegin(), requests_.rend(),
+                   [this](const LoadRequest& request) STRATA_REQUIRES(mutex_) { return !isInFlight(request.node); });
   return free == requests_.rend() ? requests_.end() : std::prev(free.base());
 }
 
@@ -49,11 +50,13 @@ std::optional<LoadRequest> LoadQueue::pop(std::stop_token stop) {
 
 void LoadQueue::pop(std::stop_token stop, const ReadLimits& limits, std::vector<LoadRequest>& out) {
   out.clear();
-  std::unique_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   Iterator found = requests_.end();
-  changed_.wait(lock, stop, [&] { return stopped_ || (found = mostUrgent()) != requests_.end(); });
+  changed_.wait(mutex_, stop,
+                [&]() STRATA_REQUIRES(mutex_) { return stopped_ || (found = mostUrgent()) != requests_.end(); });
   if (stopped_ || stop.stop_requested() || found == requests_.end()) return;
   out.push_back(take(found));
+  // Grows the range on either side, by what lies nearest, until nothing near enough is left.
   const float least = out.front().priority * limits.leastPriority;
   while (out.size() < limits.nodes && !out.front().alone) {
     const Iterator next = nextTo(out.front(), out.back(), limits, least);
@@ -70,7 +73,7 @@ LoadQueue::Iterator LoadQueue::nextTo(const LoadRequest& first, const LoadReques
   std::uint64_t nearestGap = limits.gap;
   for (Iterator request = requests_.begin(); request != requests_.end(); ++request) {
     const std::uint64_t requestEnd = request->offset + request->bytes;
-    if (request->offset < end && requestEnd > begin) continue;
+    if (request->offset < end && requestEnd > begin) continue;  // inside the range: another version of what is taken
     const std::uint64_t gap = request->offset >= end ? request->offset - end : begin - requestEnd;
     const std::uint64_t whole = std::max(end, requestEnd) - std::min(begin, request->offset);
     if (gap > nearestGap || static_cast<float>(gap) > limits.waste * static_cast<float>(request->bytes)) continue;
@@ -90,14 +93,14 @@ void LoadQueue::removeFromFlight(std::uint32_t node) {
 }
 
 void LoadQueue::finish(std::uint32_t node) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   removeFromFlight(node);
   std::erase_if(requests_, [node](const LoadRequest& request) { return request.node == node; });
 }
 
 void LoadQueue::release(std::uint32_t node) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     removeFromFlight(node);
   }
   changed_.notify_all();
@@ -105,7 +108,7 @@ void LoadQueue::release(std::uint32_t node) {
 
 void LoadQueue::putBack(const LoadRequest& request) {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     removeFromFlight(request.node);
     const bool renewed = std::any_of(requests_.begin(), requests_.end(),
                                      [&](const LoadRequest& other) { return other.node == request.node; });
@@ -116,19 +119,19 @@ void LoadQueue::putBack(const LoadRequest& request) {
 
 void LoadQueue::stop() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     stopped_ = true;
   }
   changed_.notify_all();
 }
 
 std::size_t LoadQueue::size() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return requests_.size();
 }
 
 std::size_t LoadQueue::inFlight() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return inFlight_.size();
 }
 

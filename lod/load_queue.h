@@ -1,58 +1,58 @@
 #pragma once
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <vector>
 
+#include "core/mutex.h"
 #include "core/node_data.h"
 
 namespace strata {
 
+/// A wanted node that a loader is to read, and the range of its payload that the view needs and the cache lacks.
 struct LoadRequest {
   std::uint32_t node = 0;
   Precision precision = Precision::full30;
   float priority = 0.0f;
-  bool alone = false;        ///< has failed before: not to be read together with others
-  bool ahead = false;        ///< not for the view, but for where the camera will soon be: after all that are
-  std::uint32_t bytes = 0;   ///< to be read ...
-  std::uint64_t offset = 0;  ///< ... from here in points.bin ...
-  std::uint32_t from = 0;    ///< ... which is so far into the node's payload: what stands before is there already
+  bool alone = false;  ///< it has failed before, so it is not read together with others
+  bool ahead = false;  ///< the view to come wants it, not the newest one: it is read after all that the latter wants
+  std::uint32_t from = 0;    ///< where the range begins in the payload; everything before it is in memory
+  std::uint32_t bytes = 0;   ///< length of the range
+  std::uint64_t offset = 0;  ///< where the range begins in points.bin
 };
 
-/// Requests that are read together.
+/// Which requests are read together.
 struct ReadLimits {
   std::size_t nodes = 1;
-  std::uint64_t bytes = std::uint64_t{1} << 20;  ///< of the whole read
-  std::uint64_t gap = std::uint64_t{256} << 10;  ///< bytes between two nodes that are read in vain
-  float waste = 0.5f;                            ///< the same as a share of the node that they bring
-  float leastPriority = 0.1f;                    ///< share of the first's
+  std::uint64_t bytes = std::uint64_t{1} << 20;  ///< most bytes of one read
+  std::uint64_t gap = std::uint64_t{256} << 10;  ///< most bytes between two nodes, which are read in vain
+  float waste = 0.5f;                            ///< the same limit as a share of the node behind the gap
+  float leastPriority = 0.1f;                    ///< least priority of the others, as a share of the first's
 };
 
-/// What is to be loaded, most urgent first. Each LOD pass replaces it whole, so a request that the view no longer asks
-/// for is forgotten. A node that a loader has taken is in flight until finish() or release(), and is not handed out
-/// twice meanwhile. Every member may be called by any thread; no call holds the lock for longer than it takes to sort.
+/// The requests, most urgent first. Each LOD pass replaces them all, so one that the view no longer needs is forgotten.
+/// A node that a loader has taken is in flight until finish(), release() or putBack(), and is not handed out twice in
+/// the meantime. Any thread may call any member; the lock is held for one scan of the requests at most.
 class LoadQueue {
  public:
-  /// Takes over the requests (at most one a node) and leaves the old ones' memory in `requests`, empty.
+  /// Takes over the requests, at most one per node. `requests` is empty then, with the memory of the old ones.
   void replace(std::vector<LoadRequest>& requests);
 
-  /// The most urgent request whose node is not in flight; waits for one. None when stopped.
+  /// Waits for a request whose node is not in flight and takes the most urgent one. Empty when stopped.
   std::optional<LoadRequest> pop(std::stop_token stop);
-  /// The same, and then those of about the same urgency that lie next to it in the file, so that one read brings them
-  /// all; by ascending offset. Replaces `out`; empty when stopped.
+  /// Takes those too that are about as urgent and lie next to it in the file, so that one read brings them all.
+  /// Replaces `out` by them, in ascending order of offset; leaves it empty when stopped.
   void pop(std::stop_token stop, const ReadLimits& limits, std::vector<LoadRequest>& out);
 
-  /// The node has been loaded or has failed: a request for it that came meanwhile is out of date and goes too.
+  /// The node has been loaded or has failed. A request for it that came in the meantime is out of date and goes too.
   void finish(std::uint32_t node);
-  /// The node was given up unread: a request that came meanwhile stays.
+  /// The node has not been read because it is not wanted. A request that came in the meantime stays.
   void release(std::uint32_t node);
-  /// It was not even begun with: the request stands as before, unless a new one came meanwhile.
+  /// The node could not be read yet. The request is back in the queue, unless a new one came in the meantime.
   void putBack(const LoadRequest& request);
 
-  /// Every pop(), now and later, returns none.
+  /// Every pop(), now and later, returns without a request.
   void stop();
 
   std::size_t size() const;
@@ -60,19 +60,20 @@ class LoadQueue {
 
  private:
   using Iterator = std::vector<LoadRequest>::iterator;
-  // Both with mutex_ held.
-  Iterator mostUrgent();
-  Iterator nextTo(const LoadRequest& first, const LoadRequest& last, const ReadLimits& limits, float leastPriority);
-  bool isInFlight(std::uint32_t node) const;
-  LoadRequest take(Iterator request);
-  void removeFromFlight(std::uint32_t node);
+  Iterator mostUrgent() STRATA_REQUIRES(mutex_);
+  Iterator nextTo(const LoadRequest& first, const LoadRequest& last, const ReadLimits& limits, float leastPriority)
+      STRATA_REQUIRES(mutex_);
+  bool isInFlight(std::uint32_t node) const STRATA_REQUIRES(mutex_);
+  LoadRequest take(Iterator request) STRATA_REQUIRES(mutex_);
+  void removeFromFlight(std::uint32_t node) STRATA_REQUIRES(mutex_);
 
-  // Guarded by mutex_.
-  mutable std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::vector<LoadRequest> requests_;    ///< by ascending urgency
-  std::vector<std::uint32_t> inFlight_;  ///< at most one a loader and one a finished buffer
-  bool stopped_ = false;
+  Condition changed_;
+
+  mutable Mutex mutex_;
+  std::vector<LoadRequest> requests_ STRATA_GUARDED_BY(mutex_);  ///< by ascending urgency
+  /// At most one for each loader and each filled buffer.
+  std::vector<std::uint32_t> inFlight_ STRATA_GUARDED_BY(mutex_);
+  bool stopped_ STRATA_GUARDED_BY(mutex_) = false;
 };
 
 }  // namespace strata

@@ -1,32 +1,37 @@
 #include "lod/node_reader.h"
 
-#include <condition_variable>
 #include <exception>
 #include <functional>
-#include <mutex>
 #include <utility>
 #include <vector>
+
+#include "core/mutex.h"
 
 namespace strata {
 
 struct NodeReader::Exchange {
   enum class State { idle, asked, read, ended };
 
-  // Guarded by mutex.
-  std::mutex mutex;
-  std::condition_variable_any changed;
-  State state = State::idle;
-  std::uint64_t offset = 0;
-  std::exception_ptr failure;
+  Condition changed;
 
-  // Whose turn it is by `state`: asked = the reading thread's, else the loader's.
+  Mutex mutex;
+  State state STRATA_GUARDED_BY(mutex) = State::idle;
+  std::uint64_t offset STRATA_GUARDED_BY(mutex) = 0;
+  std::exception_ptr failure STRATA_GUARDED_BY(mutex);
+
+  // Used by one thread at a time, without the lock: by the reading thread while `state` is `asked`, else by the loader.
   std::vector<std::byte> bytes;
+
+  bool hasEnded() STRATA_EXCLUDES(mutex) {
+    const MutexLock lock(mutex);
+    return state == State::ended;
+  }
 };
 
 namespace {
 
-/// Threads that are blocked in a read of a streamer that is gone. The one thing here that belongs to the process: it
-/// is what lets a streamer's end not wait for the disk, without a detached thread.
+/// Threads that are still blocked in a read although their streamer is gone. The list belongs to the process, so that a
+/// streamer can end without waiting for the disk and without detaching a thread.
 class LateThreads {
  public:
   static LateThreads& ofProcess() {
@@ -35,12 +40,12 @@ class LateThreads {
   }
 
   void add(std::jthread thread, std::function<bool()> hasEnded) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     forgetEnded();
     threads_.push_back({std::move(hasEnded), std::move(thread)});
   }
   std::size_t count() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     forgetEnded();
     return threads_.size();
   }
@@ -50,13 +55,13 @@ class LateThreads {
     std::function<bool()> hasEnded;
     std::jthread thread;
   };
-  /// Joins those that have nothing left to do.
-  void forgetEnded() {
+  /// Joins those that have nothing left to do, which takes no time.
+  void forgetEnded() STRATA_REQUIRES(mutex_) {
     std::erase_if(threads_, [](const Late& late) { return late.hasEnded(); });
   }
 
-  std::mutex mutex_;
-  std::vector<Late> threads_;
+  Mutex mutex_;
+  std::vector<Late> threads_ STRATA_GUARDED_BY(mutex_);
 };
 
 }  // namespace
@@ -69,26 +74,27 @@ NodeReader::NodeReader(std::shared_ptr<const Store> store)
 
 NodeReader::~NodeReader() {
   thread_.request_stop();
-  const auto hasEnded = [exchange = exchange_] {
-    const std::lock_guard lock(exchange->mutex);
-    return exchange->state == Exchange::State::ended;
-  };
+  Exchange& exchange = *exchange_;
   {
-    std::unique_lock lock(exchange_->mutex);
-    exchange_->changed.wait_for(lock, kPatience, [this] { return exchange_->state == Exchange::State::ended; });
+    const MutexLock lock(exchange.mutex);
+    exchange.changed.wait_for(exchange.mutex, kPatience, [&exchange]() STRATA_REQUIRES(exchange.mutex) {
+      return exchange.state == Exchange::State::ended;
+    });
   }
-  if (!hasEnded()) LateThreads::ofProcess().add(std::move(thread_), hasEnded);
+  if (!exchange.hasEnded())
+    LateThreads::ofProcess().add(std::move(thread_), [shared = exchange_] { return shared->hasEnded(); });
 }
 
 std::span<const std::byte> NodeReader::read(std::uint64_t offset, std::size_t size, std::stop_token stop) {
   using State = Exchange::State;
   Exchange& exchange = *exchange_;
   exchange.bytes.resize(size);
-  std::unique_lock lock(exchange.mutex);
+  const MutexLock lock(exchange.mutex);
   exchange.offset = offset;
   exchange.state = State::asked;
   exchange.changed.notify_all();
-  exchange.changed.wait(lock, stop, [&] { return exchange.state == State::read; });
+  exchange.changed.wait(exchange.mutex, stop,
+                        [&]() STRATA_REQUIRES(exchange.mutex) { return exchange.state == State::read; });
   if (exchange.state != State::read) return {};
   exchange.state = State::idle;
   if (exchange.failure != nullptr) std::rethrow_exception(std::exchange(exchange.failure, nullptr));
@@ -97,8 +103,9 @@ std::span<const std::byte> NodeReader::read(std::uint64_t offset, std::size_t si
 
 void NodeReader::run(std::stop_token stop, Exchange& exchange, const ByteSource& source) {
   using State = Exchange::State;
-  std::unique_lock lock(exchange.mutex);
-  while (exchange.changed.wait(lock, stop, [&] { return exchange.state == State::asked; }) && !stop.stop_requested()) {
+  MutexLock lock(exchange.mutex);
+  const auto isAsked = [&]() STRATA_REQUIRES(exchange.mutex) { return exchange.state == State::asked; };
+  while (exchange.changed.wait(exchange.mutex, stop, isAsked) && !stop.stop_requested()) {
     const std::uint64_t offset = exchange.offset;
     lock.unlock();
     std::exception_ptr failure;

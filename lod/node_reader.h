@@ -11,14 +11,14 @@
 
 namespace strata {
 
-/// Reads for one loader on a thread of its own, so that the loader can be stopped while a read is blocked: no call
-/// makes a read return that a dead disk or server holds up. Everything that the reading thread touches (the store, its
-/// buffer, the way back) is held by shared ownership. Stopped while reading, it is waited for kPatience and then left
-/// to finishLater(), which joins it when the read has returned, or at the end of the process. The store is closed by
-/// whoever lets go of it last, which may then be that thread.
+/// Reads for one loader on a thread of its own, so that the loader can be stopped while a read is blocked: nothing can
+/// interrupt a read from a dead disk or server. The reading thread shares the ownership of everything that it touches:
+/// the store and the exchange with the loader, buffer included. The destructor waits kPatience for a read. A thread
+/// that is still reading then goes to a list of the process, which joins it once the read has returned, at the latest
+/// at the end of the process. So that thread may be the last owner of the store, and close it.
 class NodeReader {
  public:
-  /// Longer than nearly all reads take.
+  /// Nearly all reads take less time than this.
   static constexpr std::chrono::milliseconds kPatience{20};
 
   explicit NodeReader(std::shared_ptr<const Store> store);
@@ -26,8 +26,8 @@ class NodeReader {
   NodeReader(const NodeReader&) = delete;
   NodeReader& operator=(const NodeReader&) = delete;
 
-  /// Reads from points.bin and waits for it. The bytes are valid until the next read; empty when stopped meanwhile,
-  /// after which there is no further reading. Throws what the source threw.
+  /// Reads from points.bin and waits for the bytes, which are valid until the next read. They are empty when `stop`
+  /// came first; the reader must not be used after that. Throws what the source threw.
   std::span<const std::byte> read(std::uint64_t offset, std::size_t size, std::stop_token stop);
 
  private:
@@ -38,7 +38,7 @@ class NodeReader {
   std::jthread thread_;
 };
 
-/// Reading threads that were still blocked when their loader had stopped: 0 except after stopping under a slow source.
+/// How many reading threads are still blocked although their loader has stopped; for tests.
 std::size_t readersFinishingLater();
 
 }  // namespace strata

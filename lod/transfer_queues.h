@@ -1,11 +1,10 @@
 #pragma once
-#include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <vector>
 
+#include "core/mutex.h"
 #include "lod/streamed_node.h"
 
 namespace strata {
@@ -16,15 +15,15 @@ struct LoadedNode {
   std::unique_ptr<StreamedNode> data;
 };
 
-/// Kanzok's map queue and unmap queue: empty buffers from the render thread to the loaders, filled ones back. The
-/// render thread puts in one empty buffer for each that it has taken out filled, so their number never grows: memory
-/// on its way is bounded, and loaders stop by themselves when no frames are drawn.
+/// The buffers on their way between the threads: empty ones from the render thread to the loaders, filled ones back
+/// (Kanzok 2015, the map queue and the unmap queue). The render thread gives one empty buffer for each filled one that
+/// it takes, so their number stays the same. That bounds their memory and stops the loaders while no frames are drawn.
 class TransferQueues {
  public:
   void giveEmpty(std::unique_ptr<StreamedNode> buffer);
   /// Waits for an empty buffer; null when stopped.
   std::unique_ptr<StreamedNode> takeEmpty(std::stop_token stop);
-  /// Buffers that are there right now.
+  /// How many empty buffers there are right now.
   std::size_t emptyBuffers() const;
   /// Does not wait; null when there is none.
   std::unique_ptr<StreamedNode> tryTakeEmpty();
@@ -34,11 +33,11 @@ class TransferQueues {
   void takeFilled(std::vector<LoadedNode>& out);
 
  private:
-  // Guarded by mutex_.
-  mutable std::mutex mutex_;
-  std::condition_variable_any emptyGiven_;
-  std::vector<std::unique_ptr<StreamedNode>> empty_;
-  std::vector<LoadedNode> filled_;
+  Condition emptyGiven_;
+
+  mutable Mutex mutex_;
+  std::vector<std::unique_ptr<StreamedNode>> empty_ STRATA_GUARDED_BY(mutex_);
+  std::vector<LoadedNode> filled_ STRATA_GUARDED_BY(mutex_);
 };
 
 }  // namespace strata
