@@ -7,7 +7,7 @@
 namespace strata {
 namespace {
 
-/// Until a list with more points of the nodes that are held back.
+/// How long to wait for the next list while nodes are held back by Fade.
 constexpr std::chrono::milliseconds kFadeStep{16};
 
 }  // namespace
@@ -26,7 +26,7 @@ const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
   if (!options.enabled) return nullptr;
   CoarseDepth& depth = depth_.back();
   depth.clear(task.view, options);
-  // Occluders are of the nodes drawn last and still resident, put where the new view sees them.
+  // The occluders are those of the nodes drawn last that are still resident, as the new view sees them.
   cache_.pin(builder_.drawn(), occluding_, occludingPins_);
   bySize_.clear();
   for (const NodeCache::Data& node : occluding_) {
@@ -38,15 +38,15 @@ const CoarseDepth* LodPass::fillCoarseDepth(const LodTask& task) {
   std::sort(bySize_.begin(), bySize_.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   for (const auto& [size, set] : bySize_) depth.add(*set);
   depth.finish();
-  occluding_.clear();  // before the pins: an evicted node's memory is used again when nobody else has it
+  occluding_.clear();  // before the pins: an evicted node's memory is used again if nobody else holds it
   cache_.unpin(occludingPins_, released_);
   occludingPins_.clear();
   released_.clear();
   return &depth_.publish();
 }
 
-LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fade::Time now, PinnedList& out,
-                             std::vector<LoadRequest>& requests, TraceLane* lane) {
+LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fade::Time now, LodOutput& out,
+                             TraceLane* lane) {
   TraceScope step(lane, "coarse depth");
   const CoarseDepth* const depth = fillCoarseDepth(task);
   step.next("select");
@@ -54,15 +54,15 @@ LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fad
   failed.copyIfNewer(failures_, failuresVersion_);
   step.next("build the list");
   fade_.begin(task.selection.fadeSeconds, now);
-  Result result{builder_.build(selection_, task.selection, failures_, fade_, out, requests), selection_.occluded,
+  Result result{builder_.build(selection_, task.selection, failures_, fade_, out), selection_.occluded,
                 depth != nullptr ? depth->drawn() : 0, fade_.held()};
   fade_.end(task.view, selection_.hidden);
   if (result.fading > 0) result.retryAt = std::min(result.retryAt, now + kFadeStep);
-  out.list.view = task.view;
+  out.pinned.list.view = task.view;
   if (task.ahead) {
     step.next("look ahead");
     selectNodes(store_.hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
-    builder_.lookAhead(selectionAhead_, failures_, requests);
+    builder_.lookAhead(selectionAhead_, failures_, out.requests);
   }
   return result;
 }

@@ -8,9 +8,10 @@ namespace strata {
 NodeCache::NodeCache(std::uint64_t capacityBytes, std::span<const std::uint32_t> parents)
     : capacityBytes_(capacityBytes), parents_(parents) {}
 
-NodeCache::Insertion NodeCache::insert(std::uint32_t node, Data data, std::vector<Data>& out) {
+NodeCache::Insertion NodeCache::insert(std::uint32_t node, std::shared_ptr<StreamedNode> data,
+                                       std::vector<Released>& out) {
   const std::uint64_t bytes = data->memoryBytes();
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Entry* const present = find(node);
   if (present != nullptr && data->loadedPlanes() <= present->data->loadedPlanes() &&
       data->leadingBytes <= present->data->leadingBytes) {
@@ -35,8 +36,8 @@ NodeCache::Insertion NodeCache::insert(std::uint32_t node, Data data, std::vecto
 
 void NodeCache::pin(std::span<const std::uint32_t> nodes, std::vector<Data>& found, std::vector<Pin>& pins) {
   found.assign(nodes.size(), nullptr);
-  const std::lock_guard lock(mutex_);
-  // Backwards, so that a node is always more recent than those below it.
+  const MutexLock lock(mutex_);
+  // Backwards, so that a node always counts as wanted more recently than those below it.
   for (std::size_t i = nodes.size(); i-- > 0;) {
     Entry* const entry = find(nodes[i]);
     if (entry == nullptr) continue;
@@ -48,8 +49,8 @@ void NodeCache::pin(std::span<const std::uint32_t> nodes, std::vector<Data>& fou
   }
 }
 
-void NodeCache::unpin(std::span<const Pin> pins, std::vector<Data>& out) {
-  const std::lock_guard lock(mutex_);
+void NodeCache::unpin(std::span<const Pin> pins, std::vector<Released>& out) {
+  const MutexLock lock(mutex_);
   for (const Pin& pin : pins) {
     Entry* const entry = find(pin.node);
     if (entry != nullptr && entry->data.get() == pin.data) {
@@ -68,19 +69,19 @@ void NodeCache::unpin(std::span<const Pin> pins, std::vector<Data>& out) {
 }
 
 NodeCache::Data NodeCache::peek(std::uint32_t node) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = entries_.find(node);
   return found != entries_.end() ? found->second.data : nullptr;
 }
 
 int NodeCache::loadedPlanes(std::uint32_t node) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const auto found = entries_.find(node);
   return found != entries_.end() && found->second.data != nullptr ? found->second.data->loadedPlanes() : 0;
 }
 
 NodeCacheStats NodeCache::stats() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return stats_;
 }
 
@@ -123,8 +124,8 @@ void NodeCache::nowFree(std::uint32_t node, Entry& entry) {
   if (wasHeld && !parent->held()) nowFree(parents_[node], *parent);
 }
 
-bool NodeCache::makeRoom(std::uint32_t node, Entry* present, std::uint64_t bytes, std::vector<Data>& out) {
-  // The node's poorer version, or else its parent, must not be what gives way.
+bool NodeCache::makeRoom(std::uint32_t node, Entry* present, std::uint64_t bytes, std::vector<Released>& out) {
+  // Neither the node's poorer version nor, where there is none, its parent may give way: a pin keeps them.
   const std::uint32_t keptNode = present != nullptr ? node : parents_[node];
   Entry* const kept = present != nullptr ? present : keptNode < parents_.size() ? find(keptNode) : nullptr;
   const std::uint64_t leaving = present != nullptr && present->pins == 0 ? present->bytes : 0;
@@ -138,14 +139,14 @@ bool NodeCache::makeRoom(std::uint32_t node, Entry* present, std::uint64_t bytes
   return fits;
 }
 
-void NodeCache::evictUntil(std::uint64_t targetBytes, std::vector<Data>& out) {
+void NodeCache::evictUntil(std::uint64_t targetBytes, std::vector<Released>& out) {
   auto at = recency_.end();
   while (stats_.residentBytes > targetBytes && at != recency_.begin()) {
     std::uint32_t node = *--at;
     Entry* entry = find(node);
     if (!entry->evictable()) continue;
     ++at;
-    // Ancestors that have been passed because of this child go right after it.
+    // Ancestors that the scan passed over, because this child was resident, go right after it.
     const std::uint64_t scanned = entry->order;
     for (bool passed = true; passed && stats_.residentBytes > targetBytes && entry->evictable();) {
       const std::uint32_t parent = parents_[node];
@@ -159,7 +160,7 @@ void NodeCache::evictUntil(std::uint64_t targetBytes, std::vector<Data>& out) {
   }
 }
 
-void NodeCache::evict(std::uint32_t node, Entry& entry, std::vector<Data>& out) {
+void NodeCache::evict(std::uint32_t node, Entry& entry, std::vector<Released>& out) {
   out.push_back(std::move(entry.data));
   stats_.residentBytes -= entry.bytes;
   --stats_.residentNodes;
@@ -172,7 +173,7 @@ void NodeCache::evict(std::uint32_t node, Entry& entry, std::vector<Data>& out) 
   if (parent->data == nullptr && parent->residentChildren == 0) entries_.erase(parents_[node]);
 }
 
-void NodeCache::addEntry(std::uint32_t node, Data data, std::uint64_t bytes) {
+void NodeCache::addEntry(std::uint32_t node, std::shared_ptr<StreamedNode> data, std::uint64_t bytes) {
   Entry& entry = entries_[node];
   entry.data = std::move(data);
   entry.bytes = bytes;
@@ -185,10 +186,11 @@ void NodeCache::addEntry(std::uint32_t node, Data data, std::uint64_t bytes) {
   ++stats_.residentNodes;
 }
 
-void NodeCache::replaceData(std::uint32_t node, Entry& entry, Data data, std::uint64_t bytes, std::vector<Data>& out) {
-  Data old = std::exchange(entry.data, std::move(data));
+void NodeCache::replaceData(std::uint32_t node, Entry& entry, std::shared_ptr<StreamedNode> data, std::uint64_t bytes,
+                            std::vector<Released>& out) {
+  std::shared_ptr<StreamedNode> old = std::exchange(entry.data, std::move(data));
   const bool wasHeld = entry.held();
-  if (entry.pins > 0) {
+  if (entry.pins > 0) {  // a list still draws the old version
     retired_.push_back({std::move(old), entry.bytes, std::exchange(entry.pins, 0)});
     retiredBytes_ += entry.bytes;
   } else {

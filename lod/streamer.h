@@ -1,71 +1,55 @@
 #pragma once
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <span>
 #include <stop_token>
 #include <thread>
 #include <vector>
 
+#include "core/mutex.h"
 #include "core/render_list.h"
 #include "core/view.h"
 #include "io/store/store.h"
-#include "lod/depth_buffers.h"
-#include "lod/failed_nodes.h"
-#include "lod/hierarchy_index.h"
-#include "lod/list_builder.h"
-#include "lod/load_queue.h"
 #include "lod/lod_pass.h"
-#include "lod/node_cache.h"
-#include "lod/node_loader.h"
-#include "lod/selection.h"
+#include "lod/streaming_state.h"
 #include "lod/trace.h"
-#include "lod/transfer_queues.h"
-
-// The life of one request:
-//   1. setView()                 any thread     a new view wakes the LOD thread
-//   2. Streamer::runPass()       LOD thread     selectNodes() wants the node, NodeCache::pin() does not find it,
-//                                               LoadQueue::replace() makes it a request
-//   3. Streamer::loaderLoop()    loader thread  TransferQueues::takeEmpty() gives memory, LoadQueue::pop() the request
-//                                               and its neighbours in the file; out of the newest view or hidden in it:
-//                                               forgotten (loadsDropped)
-//   4. NodeLoader                loader thread  read() and decode(); TransferQueues::giveFilled(), or
-//   FailedNodes::add()
-//                                               (failures; tried again later, after kMaxAttempts nodesGivenUp)
-//   5. beginFrame()              render thread  NodeCache::insert() (or refusals, duplicates), memory of evicted nodes
-//                                               goes back as empty buffers, the LOD thread wakes
-//   6. Streamer::runPass()       LOD thread     finds it, pins it, publishes a list with it; the next beginFrame()
-//                                               makes that list the front one. docs/threading.md has the whole picture.
 
 namespace strata {
 
+/// The life of one request, by the function and the thread that does it; docs/threading.md has the whole picture:
+///
+///   1. setView(), any thread: a new view wakes the LOD thread.
+///   2. LodPass::run(), LOD thread: the view wants the node, and the cache lacks it; it becomes a request in LoadQueue.
+///   3. Loader::takeRequests(), loader thread: takes it, unless it is out of date by then (loadsDropped).
+///   4. Loader::decode(), loader thread: fills a buffer with the node, or FailedNodes notes why not (failures).
+///   5. Streamer::beginFrame(), render thread: puts the node into NodeCache (or refusals, duplicates).
+///   6. LodPass::run(), LOD thread: finds and pins it; the list with it becomes the front one at the next beginFrame().
+
 struct StreamerOptions {
   SelectionOptions selection;
-  std::uint64_t cacheBytes = std::uint64_t{1} << 30;  ///< cap on decoded nodes; buffers on their way are beside it
+  std::uint64_t cacheBytes = std::uint64_t{1} << 30;  ///< cap on decoded nodes; buffers on their way come on top
   int loaderThreads = 1;                              ///< at least 1
-  Precision leastPrecision = Precision::low10;        ///< of what is read, whatever the view needs
+  Precision leastPrecision = Precision::low10;        ///< nodes are read at this precision, or better for near views
   bool lookAhead = true;                              ///< load for the view that setView() says is to come
-  ReadLimits together;                                ///< what is read at once; `nodes` is as many as there are buffers
-  std::chrono::milliseconds firstRetry{250};          ///< after a node has failed to load; each further wait is longer
-  Trace* trace = nullptr;                             ///< gets lanes of the threads; must outlive the streamer
+  ReadLimits together;                        ///< what one read may bring; `nodes` is replaced by the empty buffers
+  std::chrono::milliseconds firstRetry{250};  ///< wait after a node's first failure; each further wait is longer
+  Trace* trace = nullptr;                     ///< gets a lane for each thread; must outlive the streamer
 };
 
-/// Counts since construction, except where it says otherwise.
+/// Counts since construction, except those marked "now" or "last pass".
 struct StreamerStats {
   std::uint64_t nodesLoaded = 0;   ///< read and decoded
   std::uint64_t bytesRead = 0;     ///< from the store
-  std::uint64_t pointsLoaded = 0;  ///< of nodesLoaded, each time again
-  std::uint64_t reads = 0;         ///< that these bytes came in
-  std::uint64_t nodesAhead = 0;    ///< of nodesLoaded, those for a view to come
+  std::uint64_t pointsLoaded = 0;  ///< points of nodesLoaded; those of a node that is loaded again count again
+  std::uint64_t reads = 0;         ///< reads that brought bytesRead
+  std::uint64_t nodesAhead = 0;    ///< nodes loaded for a view to come; nodesLoaded counts them too
   std::uint64_t failures = 0;      ///< loads that ended in an error
   std::uint64_t nodesGivenUp = 0;  ///< nodes out of tries
   std::uint64_t loadsDropped = 0;  ///< taken by a loader, but no longer in view
-  std::uint32_t occluded = 0;      ///< nodes that the last pass left out, and all below them, as hidden
-  std::uint32_t occluders = 0;     ///< pieces of surface behind which the last pass looked for them
+  std::uint32_t occluded = 0;      ///< last pass: nodes left out as hidden, with everything below them
+  std::uint32_t occluders = 0;     ///< last pass: pieces of surface that could hide nodes
   std::uint64_t cacheHits = 0;     ///< nodes wanted by a new view and resident
   std::uint64_t cacheMisses = 0;   ///< nodes wanted by a new view and not resident
   std::uint64_t evictions = 0;
@@ -73,8 +57,8 @@ struct StreamerStats {
   std::uint64_t duplicates = 0;    ///< loaded nodes that were there already
   std::uint64_t overCapacity = 0;  ///< nodes wanted by a new view beyond what the cache can ever hold
   std::uint64_t lodPasses = 0;
-  double lodMs = 0.0;               ///< of the last pass
-  double lodMsMean = 0.0;           ///< over all passes
+  double lodMs = 0.0;               ///< last pass: milliseconds it took
+  double lodMsMean = 0.0;           ///< mean of all passes
   std::uint64_t queueLength = 0;    ///< now
   std::uint64_t residentBytes = 0;  ///< now
   std::uint64_t peakResidentBytes = 0;
@@ -85,111 +69,81 @@ struct StreamerStats {
 };
 
 /// Keeps a render list up to date with a moving view. Starts one LOD thread and the loader threads; the thread that
-/// calls beginFrame() and waitUntilComplete() is the render thread. Nothing here throws after construction.
+/// calls beginFrame() and waitUntilComplete() is the render thread. Nothing throws after construction.
 class Streamer {
  public:
   Streamer(std::shared_ptr<const Store> store, const StreamerOptions& options);
-  /// Waits for at most one decoding a loader, one LOD pass, and NodeReader::kPatience for reads; never for a read that
-  /// takes longer.
+  /// Waits until each loader has decoded the node it is at, for one LOD pass, and for reads no longer than
+  /// NodeReader::kPatience.
   ~Streamer();
   Streamer(const Streamer&) = delete;
   Streamer& operator=(const Streamer&) = delete;
 
   /// Any thread. Does nothing when the view is the same as before.
   void setView(const View& view);
-  /// The same, and where the camera will be in about half a second: what is missing there is loaded after everything
-  /// that is missing here.
+  /// `ahead` is where the camera will be in about half a second. What is missing there is loaded after everything that
+  /// is missing in `view`.
   void setView(const View& view, const View& ahead);
   void setSelection(const SelectionOptions& selection);
 
-  /// Render thread, once a frame: puts loaded nodes into the cache, hands out empty buffers and swaps in the newest
-  /// list. Waits for nothing but short critical sections. The list is valid until the next beginFrame() or
-  /// waitUntilComplete(); the RenderItems may be copied, but must be let go on the render thread.
+  /// Render thread, once per frame: puts loaded nodes into the cache, hands out empty buffers and swaps in the newest
+  /// list. Waits only for short critical sections. The list is valid until the next beginFrame() or
+  /// waitUntilComplete(). Its items may be copied; the copies must be destroyed on the render thread.
   const RenderList& beginFrame();
 
-  /// Any thread: the newest list is for the newest view and options, has all points of its nodes that are wanted, and
-  /// lacks nothing that can be had (nodes out of tries, and what a too small cache cannot hold, are done without).
+  /// Any thread. True when the newest list was made for the newest view and options and has everything that they want
+  /// and that can be had. Nodes that are out of tries, or that the cache is too small for, cannot.
   bool complete() const;
 
-  /// Render thread; not on the frame path. Calls beginFrame() each time that something has happened until complete(),
-  /// which is returned. The next beginFrame() gives the complete list.
+  /// Render thread; not on the frame path. Calls beginFrame() after each event until complete(), and returns that. The
+  /// next beginFrame() gives the complete list.
   bool waitUntilComplete(std::chrono::milliseconds timeout);
 
   /// Any thread.
   StreamerStats stats() const;
-  /// Any thread; for pictures of it. The depths of the newest coarse depth buffer, CoarseDepth::kSide squared, row by
-  /// row; infinite where nothing is hidden.
-  void copyCoarseDepth(std::vector<float>& depths) const { depth_.copy(depths); }
+  /// Any thread; for pictures. Replaces `depths` by the newest coarse depth in metres, CoarseDepth::kSide squared, row
+  /// by row; infinite where nothing is hidden.
+  void copyCoarseDepth(std::vector<float>& depths) const { state_.depth.copy(depths); }
 
  private:
   void lodLoop(std::stop_token stop);
   void runPass(const LodTask& task, bool isNewView);
   void publish(PinnedList& list);
-  void loaderLoop(std::stop_token stop, TraceLane* lane);
-  bool stillWanted(const LoadRequest& request);
-  void keepWanted(std::vector<LoadRequest>& requests);
-  bool loadTogether(NodeLoader& loader, std::span<const LoadRequest> requests, std::stop_token stop, TraceLane* lane,
-                    std::unique_ptr<StreamedNode>& buffer);
-  bool finishLoad(NodeLoader& loader, const LoadRequest& request, std::unique_ptr<StreamedNode>& buffer);
-  void releaseList(PinnedList& list, std::vector<NodeCache::Data>& out);
+  void releaseList(PinnedList& list, std::vector<NodeCache::Released>& out);
   void takeLoadedNodes();
   void recycle();
-  void nodesChanged();
-  void somethingHappened();
-  LodTask newestTask() const;
-  void setTask(const View& view, const std::optional<View>& ahead);
 
   // Constant after construction.
-  const std::shared_ptr<const Store> store_;
-  const HierarchyIndex index_;
-  const std::size_t buffers_;  ///< in circulation between render thread and loaders
-  const ReadLimits together_;
+  const std::size_t buffers_;  ///< that go round between the render thread and the loaders
   const bool lookAhead_;
 
-  // Each with its own lock, see there.
-  NodeCache cache_;
-  LoadQueue queue_;
-  TransferQueues transfer_;
-  FailedNodes failed_;
-  DepthBuffers depth_;
-
-  // Guarded by mutex_: what the threads tell each other.
-  mutable std::mutex mutex_;
-  std::condition_variable_any lodWake_;
-  std::condition_variable_any progress_;
-  LodTask newest_;
-  bool viewKnown_ = false;     ///< setView() has been called
-  bool nodesChanged_ = false;  ///< loaded or failed since the last pass began
-  FailedNodes::Clock::time_point retryAt_ = FailedNodes::Clock::time_point::max();  ///< when a pass is due by itself
-  std::uint64_t doneGeneration_ = 0;                                                ///< of the last published list
-  bool donePending_ = false;                                                        ///< requests were open after it
-  std::uint64_t events_ = 0;  ///< lists published and loads ended, for waitUntilComplete()
+  // Shared with the loaders; each part has a lock of its own.
+  StreamingState state_;
 
   // Guarded by listMutex_: the list on its way from the LOD thread to the render thread.
-  std::mutex listMutex_;
-  PinnedList ready_;
-  bool readyIsNew_ = false;
+  Mutex listMutex_;
+  PinnedList ready_ STRATA_GUARDED_BY(listMutex_);
+  bool readyIsNew_ STRATA_GUARDED_BY(listMutex_) = false;
 
   // Used by the LOD thread.
   TraceLane* lodLane_ = nullptr;
   LodPass pass_;
-  PinnedList back_;
-  std::vector<LoadRequest> requests_;
-  std::vector<NodeCache::Data> lodReleased_;
+  LodOutput back_;
+  std::vector<NodeCache::Released> lodReleased_;
 
   // Used by the render thread.
   PinnedList front_;
-  PinnedList old_;  ///< empty but for its memory
+  PinnedList old_;  ///< holds memory for the next list, and nothing else
   std::vector<LoadedNode> loaded_;
-  std::vector<NodeCache::Data> released_;
+  std::vector<NodeCache::Released> released_;
   std::vector<std::unique_ptr<StreamedNode>> spare_;
 
-  // Counters, relaxed: each is read by itself.
-  struct Counters {
-    std::atomic<std::uint64_t> nodesLoaded{0}, nodesAhead{0}, pointsLoaded{0}, bytesRead{0}, reads{0}, loadsDropped{0},
-        occluded{0}, occluders{0}, cacheHits{0}, cacheMisses{0}, overCapacity{0}, lodPasses{0}, lodNs{0}, lodNsTotal{0};
+  // Written by the LOD thread. Relaxed atomics: each count is read without regard to the others.
+  struct PassCounters {
+    std::atomic<std::uint64_t> occluded{0}, occluders{0}, cacheHits{0}, cacheMisses{0}, overCapacity{0}, passes{0},
+        ns{0}, nsTotal{0};
   };
-  Counters counters_;
+  PassCounters passes_;
 
   std::vector<std::jthread> loaders_;
   std::jthread lodThread_;

@@ -57,7 +57,7 @@ struct LoadedTown {
   void load(const View& view, const SelectionOptions& options) {
     Selection selection;
     selectNodes(town.hierarchy, index.reach, view, options, selection);
-    std::vector<NodeCache::Data> released;
+    std::vector<NodeCache::Released> released;
     for (const SelectedNode& selected : selection.nodes)
       if (!cache.contains(selected.node)) cache.insert(selected.node, town.load(selected.node), released);
   }
@@ -83,18 +83,17 @@ void pass(benchmark::State& state, bool occlusion) {
   DepthBuffers depth;
   LodPass lod(loaded.store, loaded.index, Precision::low10, loaded.cache, depth);
   const FailedNodes failed(std::chrono::milliseconds{250});
-  PinnedList list;
-  std::vector<LoadRequest> requests;
-  std::vector<NodeCache::Data> released;
+  LodOutput out;
+  std::vector<NodeCache::Released> released;
   LodPass::Result result;
   std::uint64_t passes = 0, nodes = 0;
   const auto run = [&](double metres) {
     task.view = loaded.town.along(metres, height);
-    result = lod.run(task, failed, Fade::Time::clock::now(), list, requests, nullptr);
-    nodes = list.list.items.size();
-    list.list.items.clear();
-    loaded.cache.unpin(list.pins, released);
-    list.pins.clear();
+    result = lod.run(task, failed, Fade::Time::clock::now(), out, nullptr);
+    nodes = out.pinned.list.items.size();
+    out.pinned.list.items.clear();
+    loaded.cache.unpin(out.pinned.pins, released);
+    out.pinned.pins.clear();
   };
   run(0.0);  // the first one has nothing that could hide anything
   for (auto _ : state) run(kStep * std::abs(static_cast<double>(++passes % 200) - 100.0));

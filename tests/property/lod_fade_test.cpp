@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <deque>
 #include <functional>
-#include <unordered_map>
 #include <vector>
 
 #include "lod/lod_pass.h"
@@ -59,17 +58,15 @@ class ResidentTown {
     for (int frame = 0; frame < seconds * kFps; ++frame) {
       task.view = at(frame / kFps);
       load(task, cache);
-      PinnedList list;
-      std::vector<LoadRequest> requests;
+      LodOutput out;
       const auto now = Fade::Time{} + std::chrono::microseconds(static_cast<std::int64_t>(1e6 * frame / kFps));
-      lod.run(task, failed, now, list, requests, nullptr);
-      EXPECT_EQ(list.list.missingNodes, 0u);
+      lod.run(task, failed, now, out, nullptr);
+      RenderList& list = out.pinned.list;
+      EXPECT_EQ(list.missingNodes, 0u);
       std::vector<float> share(town.hierarchy.nodes.size(), 0.0f);
-      for (std::size_t i = 0; i < list.pins.size(); ++i) {
-        const auto all = static_cast<float>(list.list.items[i].node->pointCount());
-        share[nodeOf(list.list.items[i].node->key)] = static_cast<float>(list.list.items[i].pointCount) / all;
-      }
-      worst.nodes = std::max(worst.nodes, list.list.items.size());
+      for (const RenderItem& item : list.items)
+        share[item.index] = static_cast<float>(item.pointCount) / static_cast<float>(item.node->pointCount());
+      worst.nodes = std::max(worst.nodes, list.items.size());
       shares.push_back(std::move(share));
       views.push_back(task.view);
       if (shares.size() > kTenth) {
@@ -77,23 +74,18 @@ class ResidentTown {
         shares.pop_front();
         views.pop_front();
       }
-      std::vector<NodeCache::Data> released;
-      list.list.items.clear();
-      cache.unpin(list.pins, released);
+      std::vector<NodeCache::Released> released;
+      list.items.clear();
+      cache.unpin(out.pinned.pins, released);
     }
     return worst;
   }
 
  private:
   static std::unique_ptr<ByteSource> noBytes() { return std::make_unique<test::MemoryBytes>(std::vector<std::byte>{}); }
-  std::uint32_t nodeOf(NodeKey key) {
-    if (byKey_.empty())
-      for (std::uint32_t i = 0; i < town.hierarchy.nodes.size(); ++i) byKey_[town.hierarchy.nodes[i].key] = i;
-    return byKey_.at(key.code);
-  }
   void load(const LodTask& task, NodeCache& cache) {
     selectNodes(town.hierarchy, index_.reach, task.view, task.selection, selection_);
-    std::vector<NodeCache::Data> released;
+    std::vector<NodeCache::Released> released;
     for (const SelectedNode& selected : selection_.nodes) {
       if (cache.contains(selected.node)) continue;
       auto node = std::make_shared<StreamedNode>();
@@ -119,7 +111,6 @@ class ResidentTown {
   HierarchyIndex index_;
   Store store_;
   Selection selection_;
-  std::unordered_map<std::uint64_t, std::uint32_t> byKey_;
 };
 
 TEST(Fade, NoNodeInViewComesFromNothingToAllWithinATenthOfASecondOfAFlight) {

@@ -10,7 +10,8 @@
 #include <thread>
 
 #include "lod/load_queue.h"
-#include "lod/node_loader.h"
+#include "lod/node_decoder.h"
+#include "lod/node_reader.h"
 #include "lod/streamer.h"
 #include "tests/support/lod_store.h"
 

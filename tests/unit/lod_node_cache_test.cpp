@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint32_t kNone = 0xffffffffu;
 constexpr std::uint32_t kPoints = 1000;
 
-std::shared_ptr<const StreamedNode> makeNode(std::uint32_t points = kPoints, int planes = 1) {
+std::shared_ptr<StreamedNode> makeNode(std::uint32_t points = kPoints, int planes = 1) {
   auto node = std::make_shared<StreamedNode>();
   for (int p = 0; p < planes; ++p) node->position[p].resize(points);
   return node;
@@ -38,7 +38,8 @@ class NodeCacheTest : public testing::Test {
     cache.unpin(pins, out_);
   }
 
-  std::vector<NodeCache::Data> out_, found_;
+  std::vector<NodeCache::Released> out_;
+  std::vector<NodeCache::Data> found_;
 };
 
 using Insertion = NodeCache::Insertion;
@@ -266,7 +267,8 @@ TEST(NodeCacheModel, AgreesWithAPlainlyRightCacheOverRandomOperations) {
     NodeCache cache(capacity, parents);
     Model model(capacity, parents);
     std::vector<std::vector<NodeCache::Pin>> lists;
-    std::vector<NodeCache::Data> out, found;
+    std::vector<NodeCache::Released> out;
+    std::vector<NodeCache::Data> found;
     for (int step = 0; step < 600; ++step) {
       const std::uint32_t what = random() % 10;
       if (what < 6) {

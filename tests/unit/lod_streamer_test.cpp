@@ -9,7 +9,8 @@
 #include <thread>
 
 #include "io/store/node_codec.h"
-#include "lod/node_loader.h"
+#include "lod/node_decoder.h"
+#include "lod/node_reader.h"
 #include "tests/support/lod_store.h"
 
 namespace strata {

@@ -1,19 +1,18 @@
-#include "lod/node_loader.h"
+#include "lod/node_decoder.h"
 
 #include <algorithm>
-#include <span>
 
 #include "core/point_layout.h"
-#include "io/store/node_codec.h"
+#include "lod/occluders.h"
 
 namespace strata {
 namespace {
 
-/// Bytes that are kept of a plane of which not all has been read: what is asked for too much when it is not known where
-/// planes end.
+/// The most bytes that are kept of a plane that has not been read whole. A request whose end is a guess, because the
+/// record does not tell where planes end, brings about so many bytes too many.
 std::uint64_t mostKept(const NodeRecord& record) { return record.headBytes + record.payloadBytes / 20; }
 
-/// Gives back what a buffer holds from a larger node before.
+/// Gives back the memory that the buffer still holds from a larger node.
 void shrink(StreamedNode& node) {
   node.batches.shrink_to_fit();
   for (auto& plane : node.position) plane.shrink_to_fit();
@@ -24,6 +23,27 @@ void shrink(StreamedNode& node) {
   node.normal.shrink_to_fit();
   node.head.shrink_to_fit();
   node.occluding.occluders.shrink_to_fit();
+}
+
+/// Starts a node with the head of its payload and nothing else.
+void startNode(const NodeRecord& record, std::span<const std::byte> bytes, StreamedNode& out) {
+  const auto head = bytes.first(std::min<std::size_t>(bytes.size(), record.headBytes));
+  out.head.assign(head.begin(), head.end());
+  out.occluding.occluders.clear();
+  out.occluding.cellSide = 0.0;
+}
+
+/// Keeps the bytes behind the last whole plane in `out.head`, so that they need not be read again. More than mostKept()
+/// is not worth its memory.
+void keepRest(const NodeRecord& record, const LoadRequest& request, std::span<const std::byte> rest,
+              StreamedNode& out) {
+  out.head.resize(record.headBytes);
+  if (rest.size() <= mostKept(record)) {
+    out.leadingBytes = request.from + request.bytes;
+    out.head.insert(out.head.end(), rest.begin(), rest.end());
+  } else {
+    out.leadingBytes = out.ends.whole;
+  }
 }
 
 }  // namespace
@@ -47,7 +67,7 @@ std::uint64_t bytesAPointBound(const StoreInfo& info) {
 
 std::uint64_t nodeBytesBound(const NodeRecord& record, std::uint64_t bytesAPoint) {
   const std::uint64_t points = record.pointCount;
-  // Batches may be shorter than they could be; twice as many are allowed for, and a few for vectors that grow.
+  // Batches may be shorter than they could be, so twice as many are allowed for, and a few for vectors that grow.
   const std::uint64_t batches = 8 + 2 * ((points + Batch::kMaxPoints - 1) / Batch::kMaxPoints);
   return sizeof(StreamedNode) + record.headBytes + mostKept(record) + batches * sizeof(Batch) + points * bytesAPoint +
          OccluderSet::mostOf(points) * sizeof(Occluder);
@@ -57,44 +77,34 @@ std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
   return nodeBytesBound(record, bytesAPointBound(info));
 }
 
-std::uint64_t NodeLoader::read(std::span<const LoadRequest> requests, std::stop_token stop) {
-  offset_ = requests.front().offset;
-  const std::uint64_t size = requests.back().offset + requests.back().bytes - offset_;
-  bytes_ = reader_.read(offset_, static_cast<std::size_t>(size), stop);
-  return bytes_.size();
+/// Copies what is there of the node to `out` and returns the bytes that follow its last whole plane, old and new.
+std::span<const std::byte> NodeDecoder::continueFrom(const StreamedNode& before, const NodeRecord& record,
+                                                     std::span<const std::byte> bytes, StreamedNode& out) {
+  static_cast<NodeData&>(out) = before;
+  out.head = before.head;
+  out.occluding = before.occluding;
+  joined_.assign(before.head.begin() + record.headBytes, before.head.end());
+  joined_.insert(joined_.end(), bytes.begin(), bytes.end());
+  return joined_;
 }
 
-bool NodeLoader::decode(const LoadRequest& request, const StreamedNode* before, bool withOccluders, StreamedNode& out) {
+DecodeResult NodeDecoder::decode(const LoadRequest& request, std::span<const std::byte> bytes,
+                                 const StreamedNode* before, bool withOccluders, StreamedNode& out) {
   const NodeRecord& record = store_->hierarchy().nodes[request.node];
-  std::span<const std::byte> bytes = bytes_.subspan(static_cast<std::size_t>(request.offset - offset_), request.bytes);
-  std::vector<std::byte> joined;  // with the part of a plane that the read before has brought
-  std::uint32_t from = 0;
+  std::uint32_t from = 0;  // where `bytes` begins in the payload
   if (before != nullptr) {
-    static_cast<NodeData&>(out) = *before;
-    out.head = before->head;
-    out.occluding = before->occluding;
+    bytes = continueFrom(*before, record, bytes, out);
     from = before->ends.whole;
-    joined.assign(before->head.begin() + record.headBytes, before->head.end());
-    joined.insert(joined.end(), bytes.begin(), bytes.end());
-    bytes = joined;
   } else {
-    const auto head = bytes.first(std::min<std::size_t>(bytes.size(), record.headBytes));
-    out.head.assign(head.begin(), head.end());
-    out.occluding.occluders.clear();
-    out.occluding.cellSide = 0.0;
+    startNode(record, bytes, out);
   }
   out.ends = decodeForDrawing(record, store_->info(), out.head, from, bytes, scratch_, out);
-  if (out.position[0].empty() && record.pointCount > 0) return false;
-  // What is left of the bytes is kept behind the head, where it is little.
-  const std::span<const std::byte> rest = bytes.subspan(out.ends.whole - from);
-  const bool isLittle = rest.size() <= mostKept(record);
-  out.leadingBytes = isLittle ? request.from + request.bytes : out.ends.whole;
-  out.head.resize(record.headBytes);
-  if (isLittle) out.head.insert(out.head.end(), rest.begin(), rest.end());
+  if (out.position[0].empty() && record.pointCount > 0) return DecodeResult::tooFewBytes;
+  keepRest(record, request, bytes.subspan(out.ends.whole - from), out);
   if (withOccluders && out.occluding.cellSide == 0.0)  // they come from the leading bits alone: once is enough
     findOccluders(out, nodeCube({record.key}, store_->info().rootCube()), record.childMask, out.occluding);
   if (out.memoryBytes() > nodeBytesBound(record, store_->info())) shrink(out);
-  return true;
+  return DecodeResult::decoded;
 }
 
 }  // namespace strata
