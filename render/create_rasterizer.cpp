@@ -1,5 +1,7 @@
 #include "render/create_rasterizer.h"
 
+#include <iterator>
+
 #include "core/error.h"
 #include "core/log.h"
 #include "render/cpu/cpu_rasterizer.h"
@@ -9,6 +11,8 @@
 
 namespace strata {
 namespace {
+
+constexpr const char* kBackendNames[] = {"auto", "cpu", "compute32", "compute64", "compute_lock", "points"};
 
 std::unique_ptr<Rasterizer> createFastest(const RasterizerOptions& options, std::unique_ptr<GlContext> context) {
   if (context == nullptr) return createCpuRasterizer(options);
@@ -25,15 +29,19 @@ std::unique_ptr<Rasterizer> createFastest(const RasterizerOptions& options, std:
 
 }  // namespace
 
+std::span<const char* const> backendNames() { return kBackendNames; }
+
+std::string backendChoices() {
+  const std::span<const char* const> names = backendNames();
+  std::string text = names.front();
+  for (const char* name : names.subspan(1, names.size() - 2)) text += std::string(", ") + name;
+  return text + " or " + names.back();
+}
+
 Backend parseBackend(std::string_view name) {
-  if (name == "auto") return Backend::automatic;
-  if (name == "cpu") return Backend::cpu;
-  if (name == "compute32") return Backend::compute32;
-  if (name == "compute64") return Backend::compute64;
-  if (name == "compute_lock") return Backend::computeLock;
-  if (name == "points") return Backend::points;
-  throw UsageError("backend: unknown name, found " + std::string(name) +
-                   " (expected auto, cpu, compute32, compute64, compute_lock or points)");
+  for (std::size_t i = 0; i < std::size(kBackendNames); ++i)
+    if (name == kBackendNames[i]) return static_cast<Backend>(i);
+  throw UsageError("backend: unknown name, found " + std::string(name) + " (expected " + backendChoices() + ")");
 }
 
 std::unique_ptr<Rasterizer> createRasterizer(Backend backend, const RasterizerOptions& options,

@@ -30,7 +30,7 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->check(CLI::Range(1e-6, 10.0));
   app.add_flag("--stills", o.stills, "write overview.png, close.png and detail.png");
   app.add_option("-o,--output", o.output, "folder for the report and the pictures");
-  app.add_option("--backend", raw.backend, "auto, cpu, compute32, compute64, compute_lock or points")
+  app.add_option("--backend", raw.backend, backendChoices())
       ->capture_default_str();
   app.add_option("--size", raw.size, "of the picture, pixels")->capture_default_str();
   app.add_option("--point-budget", o.streamer.selection.pointBudget, "most points in a frame")

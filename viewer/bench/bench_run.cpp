@@ -203,13 +203,6 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
   return flight;
 }
 
-std::unique_ptr<Rasterizer> createAnyRasterizer(const BenchOptions& options, const Store& store) {
-  if (options.progressive.millions == 0.0) return createWindowlessRasterizer(options.backend);
-  const std::uint64_t budget = options.streamer.selection.pointBudget;
-  return createProgressiveRasterizer(createHeadlessContext(),
-                                     progressiveOptions(options.progressive, budget, store.info().points));
-}
-
 /// The run whose median frame time is the (lower) median one.
 std::size_t typicalRun(const std::vector<BenchMeasures>& runs) {
   std::vector<std::size_t> order(runs.size());
@@ -323,7 +316,9 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
 
 BenchReport runBench(const BenchOptions& options) {
   const auto store = std::make_shared<const Store>(options.store);
-  const std::unique_ptr<Rasterizer> rasterizer = createAnyRasterizer(options, *store);
+  const std::unique_ptr<Rasterizer> rasterizer = createWindowlessRasterizer(
+      options.backend,
+      progressiveOptions(options.progressive, options.streamer.selection.pointBudget, store->info().points));
   makeFolder(options.output);
 
   const std::string pageCache = options.cold ? dropPages(*store) : pagesAsTheyAre(*store);

@@ -80,9 +80,17 @@ bool followDrawing(const DrawOptions& draw, SelectionOptions& selection) {
   return !(selection == before);
 }
 
-std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend) {
-  if (backend == Backend::cpu) return createRasterizer(backend, {}, nullptr);
-  if (backend != Backend::automatic) return createRasterizer(backend, {}, createHeadlessContext());
+std::unique_ptr<Rasterizer> createRasterizerFor(Backend backend, const std::optional<ProgressiveOptions>& progressive,
+                                                std::unique_ptr<GlContext> context) {
+  if (progressive) return createProgressiveRasterizer(std::move(context), *progressive);
+  return createRasterizer(backend, {}, std::move(context));
+}
+
+std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend,
+                                                       const std::optional<ProgressiveOptions>& progressive) {
+  if (!progressive && backend == Backend::cpu) return createRasterizer(backend, {}, nullptr);
+  if (progressive || backend != Backend::automatic)
+    return createRasterizerFor(backend, progressive, createHeadlessContext());
   std::unique_ptr<GlContext> context;
   try {
     context = createHeadlessContext();

@@ -10,6 +10,7 @@
 #include "io/store/store.h"
 #include "lod/selection.h"
 #include "render/create_rasterizer.h"
+#include "render/progressive/progressive_rasterizer.h"
 
 namespace strata {
 
@@ -31,8 +32,14 @@ std::optional<ColourMode> shownBy(const DrawOptions& draw);
 /// What is loaded follows from what is drawn: sets SelectionOptions::shown and clip. True when that changed them.
 bool followDrawing(const DrawOptions& draw, SelectionOptions& selection);
 
-/// A rasterizer without a window. `automatic` falls back to the cpu where there is no OpenGL.
-std::unique_ptr<Rasterizer> createWindowlessRasterizer(Backend backend);
+/// The progressive rasterizer where there are options for it, else the one of `backend`; see createRasterizer() for
+/// `context` and errors.
+std::unique_ptr<Rasterizer> createRasterizerFor(Backend backend, const std::optional<ProgressiveOptions>& progressive,
+                                                std::unique_ptr<GlContext> context);
+
+/// The same without a window. `automatic` falls back to the cpu where there is no OpenGL.
+std::unique_ptr<Rasterizer> createWindowlessRasterizer(
+    Backend backend, const std::optional<ProgressiveOptions>& progressive = std::nullopt);
 
 Image imageOf(const Picture& frame);
 

@@ -35,7 +35,9 @@ void checkProgressive(const ProgressiveFlags& flags, const std::string& backend,
   if (draw.colour == "overdraw") throw UsageError("--progressive does not count overdraw: no --colour overdraw");
 }
 
-ProgressiveOptions progressiveOptions(const ProgressiveFlags& flags, std::uint64_t pointBudget, std::uint64_t points) {
+std::optional<ProgressiveOptions> progressiveOptions(const ProgressiveFlags& flags, std::uint64_t pointBudget,
+                                                     std::uint64_t points) {
+  if (flags.millions == 0.0) return std::nullopt;
   ProgressiveOptions options;
   const double most = kPoolOverBudget * static_cast<double>(std::min(pointBudget, points));
   options.pointsPerFrame = static_cast<std::uint64_t>(std::llround(flags.millions * kMillion));

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "render/progressive/progressive_rasterizer.h"
@@ -23,7 +24,9 @@ void addProgressiveFlags(CLI::App& app, ProgressiveFlags& flags);
 /// Throws UsageError where other options ask for what progressive drawing does not do.
 void checkProgressive(const ProgressiveFlags& flags, const std::string& backend, const DrawFlags& draw);
 
-/// For stores with `points` points together.
-ProgressiveOptions progressiveOptions(const ProgressiveFlags& flags, std::uint64_t pointBudget, std::uint64_t points);
+/// The options of progressive drawing for stores that hold `points` points together; none where the flags do not ask
+/// for it.
+std::optional<ProgressiveOptions> progressiveOptions(const ProgressiveFlags& flags, std::uint64_t pointBudget,
+                                                     std::uint64_t points);
 
 }  // namespace strata

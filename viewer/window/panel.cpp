@@ -27,7 +27,6 @@ constexpr float kMostBudget = 1e8f;
 
 constexpr float kPlotHeight = 26.0f;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr const char* kBackendNames[] = {"auto", "cpu", "compute32", "compute64", "compute_lock", "points"};
 
 /// Two sliders from `least` to `most` and a button that brings `automatic` back.
 template <typename Range>
@@ -172,7 +171,7 @@ bool drawSettings(ViewerSettings& settings, const ColourLimits& limits, bool pro
   }
   changed = drawBackground(settings.draw) || changed;
   int backend = static_cast<int>(settings.backend);
-  if (ImGui::Combo("drawn by", &backend, kBackendNames, static_cast<int>(std::size(kBackendNames)))) {
+  if (ImGui::Combo("drawn by", &backend, backendNames().data(), static_cast<int>(backendNames().size()))) {
     settings.backend = static_cast<Backend>(backend);
     changed = true;
   }

@@ -44,14 +44,13 @@ glm::vec2 intensityLimits(const AttributeRange& range) {
   return {static_cast<float>(range.min), static_cast<float>(std::max(range.max, range.min + 1.0))};
 }
 
-/// Draws into the window's context.
-std::unique_ptr<Rasterizer> createAnyRasterizer(const ViewerOptions& options, const Layers& layers) {
-  auto context = adoptCurrentContext(Window::getProc());
-  if (options.progressive.millions == 0.0) return createRasterizer(options.backend, {}, std::move(context));
-  const std::uint64_t budget = options.streamer.selection.pointBudget;
+/// The rasterizer that the command line asks for, which draws with the window's context.
+std::unique_ptr<Rasterizer> createWindowRasterizer(const ViewerOptions& options, const Layers& layers) {
   std::uint64_t points = 0;
   for (const auto& store : layers.stores()) points += store->info().points;
-  return createProgressiveRasterizer(std::move(context), progressiveOptions(options.progressive, budget, points));
+  return createRasterizerFor(options.backend,
+                             progressiveOptions(options.progressive, options.streamer.selection.pointBudget, points),
+                             adoptCurrentContext(Window::getProc()));
 }
 
 class ViewerApp {
@@ -67,7 +66,7 @@ class ViewerApp {
         profile_(Window::getProc()),
         inside_(Window::getProc()),
         stateFile_(options.state),
-        rasterizer_(createAnyRasterizer(options, layers_)),
+        rasterizer_(createWindowRasterizer(options, layers_)),
         progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
         control_(overviewStill(scene_, options.size.width, options.size.height).view) {
     View first = control_.view();

@@ -15,7 +15,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   app.add_option("stores", options.stores,
                  "one or more stores, NAME.strata, shown as layers; scans, which are converted first; or a project")
       ->required();
-  app.add_option("--backend", backend, "auto, cpu, compute32, compute64, compute_lock or points")
+  app.add_option("--backend", backend, backendChoices())
       ->capture_default_str();
   app.add_option("--size", size, "of the window, pixels")->capture_default_str();
   app.add_option("--point-budget", options.streamer.selection.pointBudget, "most points in a frame")
