@@ -22,10 +22,10 @@ void addStats(const DrawStats& one, DrawStats& sum) {
 }
 
 DrawStats Rasterizer::drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                                std::span<Picture> frames) {
+                                std::span<Picture> pictures) {
   DrawStats sum;
-  for (std::size_t i = 0; i < std::min(views.size(), frames.size()); ++i)
-    addStats(draw(list, views[i], options, frames[i]), sum);
+  for (std::size_t i = 0; i < std::min(views.size(), pictures.size()); ++i)
+    addStats(draw(list, views[i], options, pictures[i]), sum);
   return sum;
 }
 

@@ -42,13 +42,13 @@ void addStats(const DrawStats& one, DrawStats& sum);
 class Rasterizer {
  public:
   virtual ~Rasterizer() = default;
-  /// Draws `list` as seen by `view` (which may be newer than the list's). `frame` is resized to the view.
-  virtual DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) = 0;
+  /// Draws `list` as seen by `view` (which may be newer than the list's). `picture` is resized to the view.
+  virtual DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& picture) = 0;
   /// One picture of `list` for each view, frames[i] as draw() gives for views[i]; as many frames as views. The sum of
   /// the stats. This one draws them one after the other; an implementation may read each point once for all views
   /// (Schütz 2022, 3.6).
   virtual DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                              std::span<Picture> frames);
+                              std::span<Picture> pictures);
   virtual std::string_view name() const = 0;
   /// "llvmpipe (LLVM 15.0.6, 256 bits)", "2 threads"; for reports.
   virtual std::string device() const = 0;

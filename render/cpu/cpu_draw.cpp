@@ -46,13 +46,13 @@ std::vector<Task> makeTasks(std::span<const CpuTarget> targets) {
 }
 
 KernelView kernelView(const CpuTarget& target, const PlannedBatch& batch) {
-  const GridTransform& grid = target.plan.grids[batch.place.grid];
+  const GridTransform& grid = target.plan.grids[batch.mapping.grid];
   KernelView view;
   view.x = grid.x;
   view.y = grid.y;
   view.depth = grid.depth;
-  view.offset = batch.place.offset;
-  view.shift = batch.place.shift;
+  view.offset = batch.mapping.offset;
+  view.shift = batch.mapping.shift;
   view.inside = batch.inside;
   view.clip = batch.clipped ? &grid : nullptr;
   view.port = viewport(target.plan.constants);
@@ -77,14 +77,22 @@ class ClassFilter {
   std::array<std::uint32_t, 256> words_;
 };
 
+/// What the passes over the points share.
+struct Draw {
+  std::span<CpuTarget> targets;
+  const DrawOptions& options;
+  const ThreadPool& pool;
+  std::vector<Task> tasks;
+  ClassFilter filter;
+};
+
 /// Projects a task's batch block by block against pixelsOf(view) and hands each view's points to use(view, block).
 template <typename Pixels, typename Use>
-void forEachBlock(std::span<CpuTarget> targets, const Task& task, const ClassFilter& filter, Wanted wanted,
-                  const Pixels& pixelsOf, const Use& use) {
+void forEachBlock(const Draw& draw, const Task& task, Wanted wanted, const Pixels& pixelsOf, const Use& use) {
   KernelView views[kMostViews];
   for (int v = 0; v < task.views; ++v) {
     const auto target = static_cast<std::size_t>(task.firstView + v);
-    views[v] = kernelView(targets[target], *task.batches[target]);
+    views[v] = kernelView(draw.targets[target], *task.batches[target]);
     views[v].pixels = pixelsOf(target);
   }
   const PlannedBatch& batch = task.any();
@@ -97,7 +105,7 @@ void forEachBlock(std::span<CpuTarget> targets, const Task& task, const ClassFil
     points.firstId = batch.firstId + done;
     for (int p = 0; p < static_cast<int>(batch.precision); ++p)
       points.planes[p] = batch.node->position[p].data() + batch.firstPoint + done;
-    points.keep = filter.keep(*batch.node, batch.firstPoint + done, points.count, keep);
+    points.keep = draw.filter.keep(*batch.node, batch.firstPoint + done, points.count, keep);
     projectPoints(points, views, task.views, wanted, blocks);
     for (int v = 0; v < task.views; ++v) use(static_cast<std::size_t>(task.firstView + v), blocks[v]);
   }
@@ -147,74 +155,73 @@ void mergeOwnPixels(CpuTarget& target, const ThreadPool& pool) {
   });
 }
 
-void drawFront(std::span<CpuTarget> targets, const std::vector<Task>& tasks, const ClassFilter& filter,
-               const ThreadPool& pool) {
+void drawFront(const Draw& draw) {
+  const std::span<CpuTarget> targets = draw.targets;
+  const ThreadPool& pool = draw.pool;
   const int threads = pool.threads();
   bool own = true;
   for (const CpuTarget& target : targets) own = own && ownPixelsPay(target, threads);
   for (CpuTarget& target : targets)
     if (own) makeOwnPixels(target, threads);
   const bool shared = threads > 1 && !own;
-  pool.parallelForSlots(tasks.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t slot) {
+  pool.parallelForSlots(draw.tasks.size(), 1, [&](std::size_t begin, std::size_t end, std::size_t slot) {
     const auto pixelsOf = [&](std::size_t view) {
       CpuTarget& target = targets[view];
       return own && slot > 0 ? target.privatePixels[slot - 1].data() : target.buffer.pixels.data();
     };
     for (std::size_t t = begin; t < end; ++t)
-      forEachBlock(targets, tasks[t], filter, Wanted::front, pixelsOf,
-                   [&](std::size_t view, const ProjectedBlock& block) {
-                     PackedPixel* pixels = pixelsOf(view);
-                     if (shared)
-                       for (std::size_t i = 0; i < block.count; ++i)
-                         lowerShared(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
-                     else
-                       for (std::size_t i = 0; i < block.count; ++i)
-                         lower(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
-                   });
+      forEachBlock(draw, draw.tasks[t], Wanted::front, pixelsOf, [&](std::size_t view, const ProjectedBlock& block) {
+        PackedPixel* pixels = pixelsOf(view);
+        if (shared)
+          for (std::size_t i = 0; i < block.count; ++i)
+            lowerShared(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
+        else
+          for (std::size_t i = 0; i < block.count; ++i)
+            lower(pixels[block.pixel[i]], packPixel(block.depthBits[i], block.id[i]));
+      });
   });
   for (CpuTarget& target : targets)
     if (own) mergeOwnPixels(target, pool);
 }
 
 /// Sums the colours of the points near each pixel's front.
-void blendNear(std::span<CpuTarget> targets, const std::vector<Task>& tasks, const ClassFilter& filter,
-               const DrawOptions& options, const ThreadPool& pool) {
+void blendNear(const Draw& draw) {
+  const std::span<CpuTarget> targets = draw.targets;
+  const std::vector<Task>& tasks = draw.tasks;
+  const DrawOptions& options = draw.options;
   for (CpuTarget& target : targets) target.buffer.sums.assign(target.buffer.pixels.size(), {});
-  const bool shared = pool.threads() > 1;
+  const bool shared = draw.pool.threads() > 1;
   const auto finished = [&](std::size_t view) { return targets[view].buffer.pixels.data(); };
-  pool.parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+  draw.pool.parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const PlannedBatch& batch = tasks[t].any();
       const std::uint32_t idOfNode = batch.firstId - batch.firstPoint;
       const bool hasRgb = options.colour == ColourMode::rgb && !batch.node->colour.empty();
       const std::uint32_t* const rgb = hasRgb ? batch.node->colour.data() : nullptr;
-      forEachBlock(targets, tasks[t], filter, Wanted::near, finished,
-                   [&](std::size_t view, const ProjectedBlock& block) {
-                     for (std::size_t i = 0; i < block.count; ++i) {
-                       const std::uint32_t point = block.id[i] - idOfNode;
-                       const std::uint64_t colour =
-                           rgb != nullptr ? rgb[point] : pointColour(*batch.node, point, options, batch.precision);
-                       ColourSum& sum = targets[view].buffer.sums[block.pixel[i]];
-                       add(sum.redGreen, (colour & 255u) | (colour >> 8 & 255u) << 32, shared);
-                       add(sum.blueCount, (colour >> 16 & 255u) | std::uint64_t{1} << 32, shared);
-                     }
-                   });
+      forEachBlock(draw, tasks[t], Wanted::near, finished, [&](std::size_t view, const ProjectedBlock& block) {
+        for (std::size_t i = 0; i < block.count; ++i) {
+          const std::uint32_t point = block.id[i] - idOfNode;
+          const std::uint64_t colour =
+              rgb != nullptr ? rgb[point] : pointColour(*batch.node, point, options, batch.precision);
+          ColourSum& sum = targets[view].buffer.sums[block.pixel[i]];
+          add(sum.redGreen, (colour & 255u) | (colour >> 8 & 255u) << 32, shared);
+          add(sum.blueCount, (colour >> 16 & 255u) | std::uint64_t{1} << 32, shared);
+        }
+      });
     }
   });
 }
 
-void countAll(std::span<CpuTarget> targets, const std::vector<Task>& tasks, const ClassFilter& filter,
-              const ThreadPool& pool) {
+void countAll(const Draw& draw) {
+  const std::span<CpuTarget> targets = draw.targets;
   for (CpuTarget& target : targets) target.buffer.counts.assign(target.buffer.pixels.size(), 0);
-  const bool shared = pool.threads() > 1;
+  const bool shared = draw.pool.threads() > 1;
   const auto finished = [&](std::size_t view) { return targets[view].buffer.pixels.data(); };
-  pool.parallelFor(tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
+  draw.pool.parallelFor(draw.tasks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      forEachBlock(targets, tasks[t], filter, Wanted::all, finished,
-                   [&](std::size_t view, const ProjectedBlock& block) {
-                     for (std::size_t i = 0; i < block.count; ++i)
-                       add(targets[view].buffer.counts[block.pixel[i]], 1u, shared);
-                   });
+      forEachBlock(draw, draw.tasks[t], Wanted::all, finished, [&](std::size_t view, const ProjectedBlock& block) {
+        for (std::size_t i = 0; i < block.count; ++i) add(targets[view].buffer.counts[block.pixel[i]], 1u, shared);
+      });
   });
 }
 
@@ -229,13 +236,12 @@ void clearTarget(CpuTarget& target, const ThreadPool& pool) {
 }
 
 void drawBatches(std::span<CpuTarget> targets, const DrawOptions& options, const ThreadPool& pool) {
-  const std::vector<Task> tasks = makeTasks(targets);
-  const ClassFilter filter(options);
-  drawFront(targets, tasks, filter, pool);
+  const Draw draw{targets, options, pool, makeTasks(targets), ClassFilter(options)};
+  drawFront(draw);
   if (options.colour == ColourMode::overdraw)
-    countAll(targets, tasks, filter, pool);
+    countAll(draw);
   else if (options.shading == Shading::highQuality)
-    blendNear(targets, tasks, filter, options, pool);
+    blendNear(draw);
 }
 
 }  // namespace strata

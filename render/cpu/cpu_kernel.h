@@ -10,7 +10,7 @@ namespace strata {
 /// A batch as one view sees it.
 struct KernelView {
   glm::vec4 x, y, depth;                ///< rows of the batch's grid
-  glm::ivec3 offset, shift;             ///< GridPlace
+  glm::ivec3 offset, shift;             ///< GridMapping
   bool inside = false;                  ///< PlannedBatch::inside
   const GridTransform* clip = nullptr;  ///< whose clip region is to be tested; null: none
   Viewport port;

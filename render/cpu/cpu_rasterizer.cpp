@@ -16,16 +16,16 @@ class CpuRasterizer final : public Rasterizer {
  public:
   explicit CpuRasterizer(const RasterizerOptions& options) : pool_(options.threads) {}
 
-  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) override {
-    return drawViews(list, {&view, 1}, options, {&frame, 1});
+  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& picture) override {
+    return drawViews(list, {&view, 1}, options, {&picture, 1});
   }
 
   DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                      std::span<Picture> frames) override {
+                      std::span<Picture> pictures) override {
     DrawStats sum;
-    for (std::size_t first = 0; first < std::min(views.size(), frames.size()); first += kViewsAtOnce) {
-      const std::size_t count = std::min({kViewsAtOnce, views.size() - first, frames.size() - first});
-      addStats(drawSome(list, views.subspan(first, count), options, frames.subspan(first, count)), sum);
+    for (std::size_t first = 0; first < std::min(views.size(), pictures.size()); first += kViewsAtOnce) {
+      const std::size_t count = std::min({kViewsAtOnce, views.size() - first, pictures.size() - first});
+      addStats(drawSome(list, views.subspan(first, count), options, pictures.subspan(first, count)), sum);
     }
     return sum;
   }
@@ -39,7 +39,7 @@ class CpuRasterizer final : public Rasterizer {
 
  private:
   DrawStats drawSome(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                     std::span<Picture> frames) {
+                     std::span<Picture> pictures) {
     Stopwatch watch;
     const std::span<CpuTarget> targets(targets_, views.size());
     DrawStats sum;
@@ -51,7 +51,7 @@ class CpuRasterizer final : public Rasterizer {
     drawBatches(targets, options, pool_);
     sum.drawMs = watch.lapMs();
     for (std::size_t v = 0; v < views.size(); ++v)
-      resolveFrame(list, views[v], options, targets[v].buffer, pool_, frames[v]);
+      resolvePicture({list, views[v], options}, {pool_}, targets[v].buffer, pictures[v]);
     sum.resolveMs = watch.lapMs();
     return sum;
   }

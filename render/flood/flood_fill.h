@@ -13,9 +13,9 @@ struct FloodStats {
 /// Hole filling by jump flooding (Farias 2014): from the points that the frame shows, in half the resolution, the
 /// layers of each pixel, then the neighbours of each point among them, then a splat for each point as large as its
 /// neighbours are far away. Pixels that are empty, or hidden by a splat, take the mean of the splats in front; all
-/// others stay as they are. What the paper does otherwise: docs/hole_filling.md. `frame` was drawn from `list`, seen by
+/// others stay as they are. What the paper does otherwise: docs/effects.md. `picture` was drawn from `list`, seen by
 /// `view`; its colours are not lit yet.
 FloodStats floodFill(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
-                     Picture& frame);
+                     Picture& picture);
 
 }  // namespace strata

@@ -53,21 +53,21 @@ class NearbyReaches {
 };
 
 /// The two halves of sameLayer(): most pairs end with the first.
-bool inReach(const FloodPlace& a, const FloodPlace& b, float distance2) {
+bool inReach(const FloodPoint& a, const FloodPoint& b, float distance2) {
   const float reach = std::min(a.reach, b.reach);
   return distance2 <= reach * reach;
 }
 
 bool alike(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
   constexpr glm::vec3 kUnknown(0.0f);
-  if (seeds.normal.empty()) return true;
-  const glm::vec3 normalA = unpackFloodNormal(seeds.normal[seeds.index(a)]);
-  const glm::vec3 normalB = unpackFloodNormal(seeds.normal[seeds.index(b)]);
+  if (seeds.normals.empty()) return true;
+  const glm::vec3 normalA = unpackFloodNormal(seeds.normals[seeds.index(a)]);
+  const glm::vec3 normalB = unpackFloodNormal(seeds.normals[seeds.index(b)]);
   if (normalA == kUnknown || normalB == kUnknown) return true;
   const glm::vec3 apart = seeds.position(b) - seeds.position(a);
   const float off = std::max(std::abs(glm::dot(apart, normalA)), std::abs(glm::dot(apart, normalB)));
   return std::abs(glm::dot(normalA, normalB)) >= settings.angle &&
-         off < settings.continuity * std::min(seeds.place[seeds.index(a)].reach, seeds.place[seeds.index(b)].reach);
+         off < settings.continuity * std::min(seeds.points[seeds.index(a)].reach, seeds.points[seeds.index(b)].reach);
 }
 
 /// Over the distance of two points whose pixels are one apart, what it is at least where the first is `metres` away.
@@ -99,7 +99,7 @@ class NeighbourList {
   NeighbourList(const FloodSeeds& seeds, const FloodSettings& settings, float leastShare, FloodPixel seed,
                 FloodNeighbours& found)
       : seeds_(seeds), settings_(settings), found_(found) {
-    const float least = 0.999f * leastShare * seeds.lens.metres(seeds.place[seeds.index(seed)].depth);
+    const float least = 0.999f * leastShare * seeds.lens.metres(seeds.points[seeds.index(seed)].depth);
     bounds_.seed = seed;
     bounds_.leastPerPixel2 = least * least;
     distancesTo(seeds, seed, found, distances_);
@@ -114,7 +114,7 @@ class NeighbourList {
     FloodPixel kept[Candidates::kMost + kFloodTile];
     float distances[Candidates::kMost + kFloodTile];
     const std::size_t count =
-        keepClose(seeds_, settings_, bounds_, candidates.seeds, candidates.count, kept, distances);
+        keepClose(seeds_, settings_, bounds_, {candidates.seeds, candidates.count}, {kept, distances});
     for (std::size_t i = 0; i < count; ++i)
       settings_.sectors ? considerInSector(kept[i], distances[i]) : considerOfAll(kept[i], distances[i]);
   }
@@ -128,14 +128,14 @@ class NeighbourList {
   }
   void considerOfAll(FloodPixel candidate, float distance2) {
     if (!before(distance2, candidate, kClosest - 1)) return;
-    std::size_t place = 0;
-    for (; place < kClosest && !before(distance2, candidate, place); ++place)
-      if (found_[place] == candidate) return;
-    for (std::size_t i = kClosest - 1; i > place; --i) put(i, found_[i - 1], distances_[i - 1]);
-    put(place, candidate, distance2);
+    std::size_t at = 0;
+    for (; at < kClosest && !before(distance2, candidate, at); ++at)
+      if (found_[at] == candidate) return;
+    for (std::size_t i = kClosest - 1; i > at; --i) put(i, found_[i - 1], distances_[i - 1]);
+    put(at, candidate, distance2);
   }
-  bool before(float distance2, FloodPixel candidate, std::size_t place) const {
-    return distance2 < distances_[place] || (distance2 == distances_[place] && candidate < found_[place]);
+  bool before(float distance2, FloodPixel candidate, std::size_t at) const {
+    return distance2 < distances_[at] || (distance2 == distances_[at] && candidate < found_[at]);
   }
   void put(std::size_t i, FloodPixel candidate, float distance2) {
     found_[i] = candidate;
@@ -159,28 +159,28 @@ void forEachSeed(const FloodSeeds& seeds, const ThreadPool& pool, Visit visit) {
   });
 }
 
-LayerPlanes emptyPlanes(const FloodSeeds& seeds, int firstStep) {
-  LayerPlanes out{};
+LayerArrays emptyArrays(const FloodSeeds& seeds, int firstStep) {
+  LayerArrays out{};
   out.margin = firstStep + kFloodTile;
   out.stride = static_cast<std::size_t>(seeds.width + 2 * out.margin);
-  for (std::vector<FloodPixel>& plane : out.planes)
-    plane.assign(out.stride * static_cast<std::size_t>(seeds.height), kNoPixel);
+  for (std::vector<FloodPixel>& layer : out.layers)
+    layer.assign(out.stride * static_cast<std::size_t>(seeds.height), kNoPixel);
   return out;
 }
 
 }  // namespace
 
 bool sameLayer(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings) {
-  return inReach(seeds.place[seeds.index(a)], seeds.place[seeds.index(b)],
+  return inReach(seeds.points[seeds.index(a)], seeds.points[seeds.index(b)],
                  distance2(seeds.position(a), seeds.position(b))) &&
          alike(seeds, a, b, settings);
 }
 
 std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings& settings, const ThreadPool& pool) {
-  LayerPlanes from = emptyPlanes(seeds, settings.firstStep), to = from;
+  LayerArrays from = emptyArrays(seeds, settings.firstStep), to = from;
   for (int y = 0; y < seeds.height; ++y)
     std::copy_n(&seeds.at[static_cast<std::size_t>(y) * static_cast<std::size_t>(seeds.width)], seeds.width,
-                &from.planes[0][from.index(0, y)]);
+                &from.layers[0][from.index(0, y)]);
   const NearbyReaches reaches(seeds, static_cast<float>(2 * settings.firstStep));
   for (int step = settings.firstStep; step > 0; step /= 2) {
     const LayerRound round{seeds, settings, from, to, step};
@@ -192,8 +192,8 @@ std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings
             continue;
           }
           for (int k = 0; k < kFloodLayers; ++k)
-            std::copy_n(&from.planes[k][from.index(x, y)], std::min(kFloodTile, seeds.width - x),
-                        &to.planes[k][to.index(x, y)]);
+            std::copy_n(&from.layers[k][from.index(x, y)], std::min(kFloodTile, seeds.width - x),
+                        &to.layers[k][to.index(x, y)]);
         }
     });
     std::swap(from, to);
@@ -204,7 +204,7 @@ std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings
     for (std::size_t y = begin; y < end; ++y) {
       const std::size_t start = from.index(0, static_cast<int>(y));
       for (std::size_t x = 0; x < width; ++x)
-        for (std::size_t k = 0; k < kFloodLayers; ++k) layers[y * width + x][k] = from.planes[k][start + x];
+        for (std::size_t k = 0; k < kFloodLayers; ++k) layers[y * width + x][k] = from.layers[k][start + x];
     }
   });
   return layers;

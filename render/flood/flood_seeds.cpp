@@ -20,28 +20,21 @@ glm::vec3 unpackNormal(std::uint32_t packed) {
 }
 
 /// The pixel of the nearest point in columns 2x, 2x + 1 of rows 2y, 2y + 1; of equal ones the first.
-FloodPixel nearestOfFour(const Picture& frame, int x, int y) {
+FloodPixel nearestOfFour(const Picture& picture, int x, int y) {
   FloodPixel nearest = kNoPixel;
   float depth = 0.0f;
-  for (int v = 2 * y; v < std::min(2 * y + 2, frame.height); ++v)
-    for (int u = 2 * x; u < std::min(2 * x + 2, frame.width); ++u) {
-      const auto i = static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(u);
-      if (frame.pointId[i] == Picture::kNoPoint || (nearest != kNoPixel && !(frame.depth[i] < depth))) continue;
+  for (int v = 2 * y; v < std::min(2 * y + 2, picture.height); ++v)
+    for (int u = 2 * x; u < std::min(2 * x + 2, picture.width); ++u) {
+      const auto i =
+          static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(u);
+      if (picture.pointId[i] == Picture::kNoPoint || (nearest != kNoPixel && !(picture.depth[i] < depth))) continue;
       nearest = floodPixel(static_cast<std::uint32_t>(u), static_cast<std::uint32_t>(v));
-      depth = frame.depth[i];
+      depth = picture.depth[i];
     }
   return nearest;
 }
 
 }  // namespace
-
-FloodSettings faithfulFlood(float scale, float share) {
-  FloodSettings settings;
-  settings.reachMetres = share * scale;
-  settings.continuity = 0.05f / share;
-  settings.sectors = settings.estimateNormals = settings.ellipses = settings.keepFront = false;
-  return settings;
-}
 
 std::uint32_t packFloodNormal(const glm::vec3& normal) {
   if (normal == glm::vec3(0.0f)) return 0;
@@ -86,41 +79,41 @@ std::vector<float> floodReaches(const RenderList& list, const FloodSettings& set
   return reaches;
 }
 
-FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Picture& frame,
+FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Picture& picture,
                         const ThreadPool& pool) {
   FloodSeeds out;
   out.lens = floodLens(view);
-  if (frame.width > kFloodLargestSide || frame.height > kFloodLargestSide) return out;
-  out.width = (frame.width + 1) / 2;
-  out.height = (frame.height + 1) / 2;
+  if (picture.width > kFloodLargestSide || picture.height > kFloodLargestSide) return out;
+  out.width = (picture.width + 1) / 2;
+  out.height = (picture.height + 1) / 2;
   const auto width = static_cast<std::size_t>(out.width), height = static_cast<std::size_t>(out.height);
   const bool normals =
       settings.useNormals && std::any_of(list.items.begin(), list.items.end(),
                                          [](const RenderItem& item) { return !item.node->normal.empty(); });
   out.at.resize(width * height);
-  out.place.resize(width * height);
-  if (normals) out.normal.assign(width * height, 0);
+  out.points.resize(width * height);
+  if (normals) out.normals.assign(width * height, 0);
   const PointFinder finder(list);
   const std::vector<float> reaches = floodReaches(list, settings);
   const ViewBasis basis = viewBasis(view);
   const glm::mat3 toCamera(glm::transpose(glm::dmat3(basis.right, basis.up, basis.forward)));
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * width; i < end * width; ++i) {
-      const FloodPixel seed = nearestOfFour(frame, static_cast<int>(i % width), static_cast<int>(i / width));
+      const FloodPixel seed = nearestOfFour(picture, static_cast<int>(i % width), static_cast<int>(i / width));
       out.at[i] = seed;
-      out.place[i] = {};
+      out.points[i] = {};
       if (seed == kNoPixel) continue;
-      const std::size_t pixel = static_cast<std::size_t>(pixelRow(seed)) * static_cast<std::size_t>(frame.width) +
+      const std::size_t pixel = static_cast<std::size_t>(pixelRow(seed)) * static_cast<std::size_t>(picture.width) +
                                 static_cast<std::size_t>(pixelColumn(seed));
-      const PointPlace place = finder.find(frame.pointId[pixel]);
-      const float depth = frame.depth[pixel];
+      const PointLocation location = finder.find(picture.pointId[pixel]);
+      const float depth = picture.depth[pixel];
       // The seeds of neighbouring pixels are next to each other, however near the points of the scan lie.
       const float least = settings.sectors ? kFloodNextPixels * out.lens.metres(depth) : 0.0f;
-      out.place[i] = {depth, std::max(reaches[place.item], least)};
-      if (!normals || place.node->normal.empty()) continue;
-      const glm::vec3 normal = toCamera * unpackNormal(place.node->normal[place.index]);
+      out.points[i] = {depth, std::max(reaches[location.item], least)};
+      if (!normals || location.node->normal.empty()) continue;
+      const glm::vec3 normal = toCamera * unpackNormal(location.node->normal[location.index]);
       const glm::vec3 away = out.lens.perspective ? out.lens.position(seed, depth) : glm::vec3(0.0f, 0.0f, 1.0f);
-      out.normal[i] = packFloodNormal(glm::dot(normal, away) > 0.0f ? -normal : normal);
+      out.normals[i] = packFloodNormal(glm::dot(normal, away) > 0.0f ? -normal : normal);
     }
   });
   return out;

@@ -27,10 +27,6 @@ struct FloodSettings {
   bool keepFront = true;        ///< what no splat hides keeps its colour; else all is blended
 };
 
-/// Farias 2014 as printed: `scale` is the longest side of the model, `share` of it the largest distance (0.01 where the
-/// points are dense to 0.1 where they are sparse), continuity 0.05 of it, circles around the 4 closest neighbours.
-FloodSettings faithfulFlood(float scale, float share);
-
 /// A pixel of the whole picture as x | y << 16: what seeds are called by. Smaller is higher up, then farther left.
 using FloodPixel = std::uint32_t;
 inline constexpr FloodPixel kNoPixel = 0xffffffffu;
@@ -55,7 +51,7 @@ struct FloodLens {
 FloodLens floodLens(const View& view);
 
 /// What of the point that a pixel of the half picture shows.
-struct FloodPlace {
+struct FloodPoint {
   float depth;
   float reach;  ///< metres; largest distance of a neighbour
 };
@@ -66,22 +62,22 @@ glm::vec3 unpackFloodNormal(std::uint32_t packed);
 
 /// The first of the four steps (Farias 2014, 4.1): the nearest point of each 2 x 2 pixels, in the middle of its pixel.
 struct FloodSeeds {
-  int width = 0, height = 0;          ///< of the half picture
-  FloodLens lens;                     ///< of the whole one
-  std::vector<FloodPixel> at;         ///< for each pixel of the half picture where its seed is; kNoPixel: it has none
-  std::vector<FloodPlace> place;      ///< by index()
-  std::vector<std::uint32_t> normal;  ///< likewise, see packFloodNormal(), as positions are; 0: not known. Or empty
+  int width = 0, height = 0;           ///< of the half picture
+  FloodLens lens;                      ///< of the whole one
+  std::vector<FloodPixel> at;          ///< for each pixel of the half picture where its seed is; kNoPixel: it has none
+  std::vector<FloodPoint> points;      ///< by index()
+  std::vector<std::uint32_t> normals;  ///< likewise, see packFloodNormal(), as positions are; 0: not known. Or empty
 
   std::size_t index(FloodPixel seed) const {
     return static_cast<std::size_t>(seed >> 17) * static_cast<std::size_t>(width) + ((seed & 0xffffu) >> 1);
   }
-  glm::vec3 position(FloodPixel seed) const { return lens.position(seed, place[index(seed)].depth); }
+  glm::vec3 position(FloodPixel seed) const { return lens.position(seed, points[index(seed)].depth); }
   /// Largest distance of a neighbour, in pixels of the half picture.
-  float reachPx(std::size_t i) const { return 0.5f * place[i].reach / lens.metres(place[i].depth); }
+  float reachPx(std::size_t i) const { return 0.5f * points[i].reach / lens.metres(points[i].depth); }
 };
 
-/// `frame` was drawn from the list, seen by `view`.
-FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Picture& frame,
+/// `picture` was drawn from the list, seen by `view`.
+FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Picture& picture,
                         const ThreadPool& pool);
 
 /// Metres between the first `drawn` points of a node: its own spacing, or that of points spread evenly over the two

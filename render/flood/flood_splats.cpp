@@ -58,11 +58,10 @@ Around lookAround(const FloodSeeds& seeds, const glm::vec3& position, const Floo
     }
     const glm::vec3 offset = seeds.position(neighbours[i]) - position;
     const float distance = glm::length(offset);
-    int place = around.count++;
-    around.offset[place] = offset;
-    for (; place > 0 && around.distance[place - 1] > distance; --place)
-      around.distance[place] = around.distance[place - 1];
-    around.distance[place] = distance;
+    int at = around.count++;
+    around.offset[at] = offset;
+    for (; at > 0 && around.distance[at - 1] > distance; --at) around.distance[at] = around.distance[at - 1];
+    around.distance[at] = distance;
   }
   return around;
 }
@@ -122,25 +121,25 @@ Axes axesOf(const Around& around, const glm::vec3& normal, float radius, bool el
 
 class SplatMaker {
  public:
-  SplatMaker(const FloodSeeds& seeds, int width, int height, const FloodSettings& settings)
-      : seeds_(seeds), lens_(seeds.lens), width_(width), height_(height), settings_(settings) {}
+  SplatMaker(const FloodSeeds& seeds, const glm::ivec2& size, const FloodSettings& settings)
+      : seeds_(seeds), lens_(seeds.lens), size_(size), settings_(settings) {}
 
   /// False where there is none.
   bool make(FloodPixel seed, const FloodNeighbours& neighbours, FloodSplat& splat) const {
     const std::size_t index = seeds_.index(seed);
-    const FloodPlace& place = seeds_.place[index];
-    const glm::vec3 position = lens_.position(seed, place.depth);
+    const FloodPoint& point = seeds_.points[index];
+    const glm::vec3 position = lens_.position(seed, point.depth);
     const Around around = lookAround(seeds_, position, neighbours, settings_.sectors);
     if (around.count == 0 || (settings_.sectors && around.count < kFloodFewestNeighbours)) return false;
-    const float median = strata::median(around.distance, around.count), pixel = lens_.metres(place.depth);
+    const float median = strata::median(around.distance, around.count), pixel = lens_.metres(point.depth);
     float radius = median, closest = around.distance[0];
     if (settings_.sectors) closest = std::max(closest, kFloodSeedPixels * pixel);
     if (settings_.sectors && median < kFloodNextPixels * pixel)
-      radius = std::min(radius, kFloodMostSpacings / settings_.reachSpacings * place.reach);
-    if (!(radius > 0.0f) || median > place.reach || median > settings_.relativeRadius * closest) return false;
+      radius = std::min(radius, kFloodMostSpacings / settings_.reachSpacings * point.reach);
+    if (!(radius > 0.0f) || median > point.reach || median > settings_.relativeRadius * closest) return false;
     if (radius < kFloodLeastPixels * pixel) return false;
     const glm::vec3 toEye = lens_.perspective ? -glm::normalize(position) : glm::vec3(0.0f, 0.0f, -1.0f);
-    glm::vec3 normal = seeds_.normal.empty() ? glm::vec3(0.0f) : unpackFloodNormal(seeds_.normal[index]);
+    glm::vec3 normal = seeds_.normals.empty() ? glm::vec3(0.0f) : unpackFloodNormal(seeds_.normals[index]);
     if (normal == glm::vec3(0.0f)) normal = settings_.estimateNormals ? planeNormal(around, toEye) : toEye;
     if (!(std::abs(glm::dot(normal, toEye)) > kFloodEdgeOn)) return false;
     splat.from = seed;
@@ -192,16 +191,16 @@ class SplatMaker {
     const auto within = [](float x, int least, int most) {
       return static_cast<std::int16_t>(std::clamp(x, static_cast<float>(least), static_cast<float>(most)));
     };
-    splat.left = within(lo.x, 0, width_);
-    splat.right = within(std::floor(hi.x), -1, width_ - 1);
-    splat.top = within(lo.y, 0, height_);
-    splat.bottom = within(std::floor(hi.y), -1, height_ - 1);
+    splat.left = within(lo.x, 0, size_.x);
+    splat.right = within(std::floor(hi.x), -1, size_.x - 1);
+    splat.top = within(lo.y, 0, size_.y);
+    splat.bottom = within(std::floor(hi.y), -1, size_.y - 1);
     return splat.left <= splat.right && splat.top <= splat.bottom;
   }
 
   const FloodSeeds& seeds_;
   const FloodLens& lens_;
-  int width_, height_;
+  const glm::ivec2 size_;  ///< of the picture
   const FloodSettings& settings_;
 };
 
@@ -214,23 +213,23 @@ class StripPainter {
         source_(source),
         width_(static_cast<std::size_t>(source.width)),
         stride_(width_ + kFloodTile) {
-    for (std::vector<float>* plane : {&limit_, &red_, &green_, &blue_, &depth_, &weight_, &heaviest_})
-      plane->resize(stride_ * kStripRows);
+    for (std::vector<float>* sums : {&limit_, &red_, &green_, &blue_, &depth_, &weight_, &heaviest_})
+      sums->resize(stride_ * kStripRows);
     from_.resize(stride_ * kStripRows);
   }
 
   /// Returns how many pixels of rows [top, bottom) it filled.
-  std::uint64_t paint(const std::vector<std::uint32_t>& indices, int top, int bottom, Picture& frame) {
+  std::uint64_t paint(const std::vector<std::uint32_t>& indices, int top, int bottom, Picture& picture) {
     std::fill(limit_.begin(), limit_.end(), kFar);
-    for (std::vector<float>* plane : {&red_, &green_, &blue_, &depth_, &weight_, &heaviest_})
-      std::fill(plane->begin(), plane->end(), 0.0f);
+    for (std::vector<float>* sums : {&red_, &green_, &blue_, &depth_, &weight_, &heaviest_})
+      std::fill(sums->begin(), sums->end(), 0.0f);
     const FloodStrip strip{top,          bottom,        stride_,        limit_.data(),    red_.data(), green_.data(),
                            blue_.data(), depth_.data(), weight_.data(), heaviest_.data(), from_.data()};
     for (const std::uint32_t i : indices) drawSplatDepth(splats_[i], strip);
     if (settings_.keepFront) closeFullPixels(top, bottom);
     for (const std::uint32_t i : indices) blendSplat(splats_[i], source_.colour[pixelOf(splats_[i].from)], strip);
     std::uint64_t filled = 0;
-    for (int y = top; y < bottom; ++y) filled += write(y, top, frame);
+    for (int y = top; y < bottom; ++y) filled += write(y, top, picture);
     return filled;
   }
 
@@ -248,7 +247,7 @@ class StripPainter {
     }
   }
 
-  std::uint64_t write(int y, int top, Picture& frame) const {
+  std::uint64_t write(int y, int top, Picture& picture) const {
     std::uint64_t filled = 0;
     const std::size_t row = static_cast<std::size_t>(y) * width_, first = static_cast<std::size_t>(y - top) * stride_;
     for (std::size_t x = 0; x < width_; ++x) {
@@ -256,9 +255,9 @@ class StripPainter {
       if (!(weight_[i] > 0.0f)) continue;
       const float share = 1.0f / weight_[i];
       const auto mean = [share](float sum) { return static_cast<std::uint32_t>(sum * share + 0.5f); };
-      frame.colour[row + x] = mean(red_[i]) | mean(green_[i]) << 8 | mean(blue_[i]) << 16 | 0xff000000u;
-      frame.depth[row + x] = depth_[i] * share;
-      frame.pointId[row + x] = source_.pointId[pixelOf(from_[i])];
+      picture.colour[row + x] = mean(red_[i]) | mean(green_[i]) << 8 | mean(blue_[i]) << 16 | 0xff000000u;
+      picture.depth[row + x] = depth_[i] * share;
+      picture.pointId[row + x] = source_.pointId[pixelOf(from_[i])];
       ++filled;
     }
     return filled;
@@ -274,42 +273,43 @@ class StripPainter {
 
 }  // namespace
 
-std::vector<FloodSplat> makeSplats(const FloodSeeds& seeds, const std::vector<FloodNeighbours>& neighbours, int width,
-                                   int height, const FloodSettings& settings, const ThreadPool& pool) {
-  const SplatMaker maker(seeds, width, height, settings);
+std::vector<FloodSplat> makeSplats(const FloodSeeds& seeds, const std::vector<FloodNeighbours>& neighbours,
+                                   const glm::ivec2& size, const FloodSettings& settings, const ThreadPool& pool) {
+  const SplatMaker maker(seeds, size, settings);
   const auto columns = static_cast<std::size_t>(seeds.width), rows = static_cast<std::size_t>(seeds.height);
-  const std::size_t parts = (rows + kRowsAtOnce - 1) / kRowsAtOnce;
-  std::vector<std::vector<FloodSplat>> made(parts);
-  pool.parallelFor(parts, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t part = begin; part < end; ++part) {
-      const std::size_t first = part * kRowsAtOnce * columns;
+  const std::size_t strips = (rows + kRowsAtOnce - 1) / kRowsAtOnce;
+  std::vector<std::vector<FloodSplat>> made(strips);
+  pool.parallelFor(strips, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t strip = begin; strip < end; ++strip) {
+      const std::size_t first = strip * kRowsAtOnce * columns;
       for (std::size_t i = first; i < std::min(first + kRowsAtOnce * columns, rows * columns); ++i) {
         FloodSplat splat;
-        if (seeds.at[i] != kNoPixel && maker.make(seeds.at[i], neighbours[i], splat)) made[part].push_back(splat);
+        if (seeds.at[i] != kNoPixel && maker.make(seeds.at[i], neighbours[i], splat)) made[strip].push_back(splat);
       }
     }
   });
   std::vector<FloodSplat> splats;
-  for (const auto& part : made) splats.insert(splats.end(), part.begin(), part.end());
+  for (const auto& strip : made) splats.insert(splats.end(), strip.begin(), strip.end());
   return splats;
 }
 
 std::uint64_t drawSplats(const std::vector<FloodSplat>& splats, const FloodSettings& settings, const ThreadPool& pool,
-                         Picture& frame) {
+                         Picture& picture) {
   if (splats.empty()) return 0;
-  const auto strips = static_cast<std::size_t>((frame.height + kStripRows - 1) / kStripRows);
+  const auto strips = static_cast<std::size_t>((picture.height + kStripRows - 1) / kStripRows);
   std::vector<std::vector<std::uint32_t>> inStrip(strips);
   for (std::uint32_t i = 0; i < splats.size(); ++i)
     for (int strip = splats[i].top / kStripRows; strip * kStripRows <= splats[i].bottom; ++strip)
       inStrip[static_cast<std::size_t>(strip)].push_back(i);
   std::atomic<std::uint64_t> filled{0};
-  const Picture source = frame;
+  const Picture source = picture;
   pool.parallelFor(strips, std::max<std::size_t>(strips / (4 * static_cast<std::size_t>(pool.threads())), 1),
                    [&](std::size_t begin, std::size_t end) {
                      StripPainter painter(splats, settings, source);
                      for (std::size_t strip = begin; strip < end; ++strip) {
                        const int top = static_cast<int>(strip) * kStripRows;
-                       filled += painter.paint(inStrip[strip], top, std::min(top + kStripRows, frame.height), frame);
+                       filled +=
+                           painter.paint(inStrip[strip], top, std::min(top + kStripRows, picture.height), picture);
                      }
                    });
   return filled;

@@ -18,13 +18,13 @@ namespace {
 constexpr unsigned kMostIndexBits = 22;  ///< beside the weight in FloodSum::heaviest
 
 shader::FloodParams paramsOf(const RenderList& list, const View& view, const FloodSettings& settings, bool normals,
-                             const Picture& frame) {
+                             const Picture& picture) {
   const FloodLens lens = floodLens(view);
   shader::FloodParams params{};
-  params.width = frame.width;
-  params.height = frame.height;
-  params.halfWidth = (frame.width + 1) / 2;
-  params.halfHeight = (frame.height + 1) / 2;
+  params.width = picture.width;
+  params.height = picture.height;
+  params.halfWidth = (picture.width + 1) / 2;
+  params.halfHeight = (picture.height + 1) / 2;
   params.tileColumns = (params.halfWidth + STRATA_FLOOD_TILE - 1) / STRATA_FLOOD_TILE;
   params.tileRows = (params.halfHeight + STRATA_FLOOD_TILE - 1) / STRATA_FLOOD_TILE;
   const auto flag = [&](bool on, std::uint32_t bit) { params.flags |= on ? bit : 0; };
@@ -82,24 +82,21 @@ std::string floodDefines(std::uint32_t groupSize) {
 /// Programs and buffers.
 class GlFlood::Work {
  public:
-  Work(const GlFunctions& functions, std::uint32_t groupSize) : gl_(functions), groupSize_(groupSize) {
-    long long bytes = 0;
-    gl_.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
-    largestBlock_ = static_cast<std::uint64_t>(std::max(bytes, 0LL));
-  }
+  Work(const GlFunctions& functions, std::uint32_t groupSize)
+      : gl_(functions), groupSize_(groupSize), largestBlock_(largestStorageBlock(functions)) {}
 
-  bool fits(const Picture& frame) const {
-    const std::uint64_t pixels = static_cast<std::uint64_t>(frame.width) * static_cast<std::uint64_t>(frame.height);
+  bool fits(const Picture& picture) const {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(picture.width) * static_cast<std::uint64_t>(picture.height);
     const std::uint64_t half =
-        static_cast<std::uint64_t>((frame.width + 1) / 2) * static_cast<std::uint64_t>((frame.height + 1) / 2);
-    return frame.width <= kFloodLargestSide && frame.height <= kFloodLargestSide &&
+        static_cast<std::uint64_t>((picture.width + 1) / 2) * static_cast<std::uint64_t>((picture.height + 1) / 2);
+    return picture.width <= kFloodLargestSide && picture.height <= kFloodLargestSide &&
            half < (std::uint64_t{1} << kMostIndexBits) && pixels * sizeof(shader::FloodSum) <= largestBlock_ &&
            half * sizeof(shader::FloodShape) <= largestBlock_;
   }
 
   FloodStats fill(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
-                  Picture& frame) {
-    send(list, view, settings, pool, frame);
+                  Picture& picture) {
+    send(list, view, settings, pool, picture);
     begin_.record();
     project();
     projected_.record();
@@ -112,7 +109,7 @@ class GlFlood::Work {
     draw();
     end_.record();
     gl_.UseProgram(0);
-    fetch(frame);
+    fetch(picture);
     const auto ms = [](const GlTimestamp& from, const GlTimestamp& to) {
       return static_cast<double>(to.value() - from.value()) * 1e-6;
     };
@@ -132,26 +129,26 @@ class GlFlood::Work {
   }
 
   void send(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
-            const Picture& frame) {
+            const Picture& picture) {
     // The scan's normals are not on the GPU: the CPU looks them up for the pixels of the half picture.
     const bool normals = settings.useNormals && std::any_of(list.items.begin(), list.items.end(), [](const auto& item) {
                            return !item.node->normal.empty();
                          });
-    params_ = paramsOf(list, view, settings, normals, frame);
+    params_ = paramsOf(list, view, settings, normals, picture);
     const auto bytes = [](const auto& some) { return some.size() * sizeof(some[0]); };
     paramsBuffer_.assign(&params_, sizeof(params_));
     const std::vector<shader::FloodItem> items = itemsOf(list, settings);
     items_.assign(items.data(), bytes(items));
     if (normals) {
-      const FloodSeeds seeds = collectSeeds(list, view, settings, frame, pool);
-      normals_.assign(seeds.normal.data(), bytes(seeds.normal));
+      const FloodSeeds seeds = collectSeeds(list, view, settings, picture, pool);
+      normals_.assign(seeds.normals.data(), bytes(seeds.normals));
     } else {
       normals_.reserve(sizeof(std::uint32_t));
     }
-    depths_.assign(frame.depth.data(), bytes(frame.depth));
-    ids_.assign(frame.pointId.data(), bytes(frame.pointId));
-    colours_.assign(frame.colour.data(), bytes(frame.colour));
-    const std::uint64_t pixels = frame.depth.size();
+    depths_.assign(picture.depth.data(), bytes(picture.depth));
+    ids_.assign(picture.pointId.data(), bytes(picture.pointId));
+    colours_.assign(picture.colour.data(), bytes(picture.colour));
+    const std::uint64_t pixels = picture.depth.size();
     const std::uint64_t half =
         static_cast<std::uint64_t>(params_.halfWidth) * static_cast<std::uint64_t>(params_.halfHeight);
     seeds_.reserve(half * sizeof(shader::FloodSeed));
@@ -215,18 +212,18 @@ class GlFlood::Work {
     dispatch(finishProgram_, 0);
   }
 
-  void fetch(Picture& frame) const {
-    const std::uint64_t bytes = frame.depth.size() * sizeof(std::uint32_t);
-    colours_.read(0, frame.colour.data(), bytes);
-    depths_.read(0, frame.depth.data(), bytes);
-    filledIds_.read(0, frame.pointId.data(), bytes);
+  void fetch(Picture& picture) const {
+    const std::uint64_t bytes = picture.depth.size() * sizeof(std::uint32_t);
+    colours_.read(0, picture.colour.data(), bytes);
+    depths_.read(0, picture.depth.data(), bytes);
+    filledIds_.read(0, picture.pointId.data(), bytes);
   }
 
   std::unique_ptr<GlBuffer> buffer() const { return std::make_unique<GlBuffer>(gl_, 0, gl::kDynamicCopy); }
 
   const GlFunctions& gl_;
   const std::uint32_t groupSize_;
-  std::uint64_t largestBlock_ = 0;
+  const std::uint64_t largestBlock_;  ///< bytes
   const GlProgram projectProgram_ = program("flood_project.comp"), spreadProgram_ = program("flood_spread.comp"),
                   layersProgram_ = program("flood_layers.comp"), neighboursProgram_ = program("flood_neighbours.comp"),
                   splatsProgram_ = program("flood_splats.comp"), drawProgram_ = program("flood_draw.comp"),
@@ -246,16 +243,16 @@ GlFlood::GlFlood(const GlFunctions& functions, std::uint32_t groupSize) : gl_(fu
 GlFlood::~GlFlood() = default;
 
 FloodStats GlFlood::fill(const RenderList& list, const View& view, const FloodSettings& settings,
-                         const ThreadPool& pool, Picture& frame) {
-  if (list.items.empty() || frame.depth.empty()) return {};
+                         const ThreadPool& pool, Picture& picture) {
+  if (list.items.empty() || picture.depth.empty()) return {};
   try {
     if (!failed_ && work_ == nullptr) work_ = std::make_unique<Work>(gl_, groupSize_);
   } catch (const Error& error) {
     failed_ = true;
     logWarning("holes are filled on the CPU: " + std::string(error.what()));
   }
-  return failed_ || !work_->fits(frame) ? floodFill(list, view, settings, pool, frame)
-                                        : work_->fill(list, view, settings, pool, frame);
+  return failed_ || !work_->fits(picture) ? floodFill(list, view, settings, pool, picture)
+                                          : work_->fill(list, view, settings, pool, picture);
 }
 
 }  // namespace strata

@@ -24,7 +24,7 @@ class GlFlood {
   /// As floodFill(); the steps' times are the GPU's, by its own clock; sending and fetching the picture is not in them.
   /// What the driver cannot do, a picture larger than its storage blocks say, is filled by floodFill().
   FloodStats fill(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
-                  Picture& frame);
+                  Picture& picture);
 
  private:
   class Work;

@@ -28,8 +28,8 @@ class SeedTable {
   explicit SeedTable(const FloodSeeds& seeds)
       : width_(static_cast<std::uint32_t>(seeds.width)),
         lens_(seeds.lens),
-        place_(&seeds.place.data()->depth),
-        normal_(seeds.normal.empty() ? nullptr : reinterpret_cast<const std::int32_t*>(seeds.normal.data())) {}
+        points_(&seeds.points.data()->depth),
+        normal_(seeds.normals.empty() ? nullptr : reinterpret_cast<const std::int32_t*>(seeds.normals.data())) {}
 
   bool hasNormals() const { return normal_ != nullptr; }
 
@@ -43,8 +43,8 @@ class SeedTable {
     const auto safe = hn::IfThenElseZero(toWord(some), seed);
     const auto index =
         hn::BitCast(kInteger, hn::ShiftRight<17>(safe) * hn::Set(kWord, width_) + hn::ShiftRight<1>(column(safe)));
-    out.z = hn::GatherIndex(kFloat, place_, index + index);
-    out.reach = hn::GatherIndex(kFloat, place_ + 1, index + index);
+    out.z = hn::GatherIndex(kFloat, points_, index + index);
+    out.reach = hn::GatherIndex(kFloat, points_ + 1, index + index);
     const auto size = metres(out.z);
     out.x = (toFloat(column(safe)) - hn::Set(kFloat, lens_.middleX - 0.5f)) * size;
     out.y = (hn::Set(kFloat, lens_.middleY - 0.5f) - toFloat(row(safe))) * size;
@@ -65,17 +65,23 @@ class SeedTable {
  private:
   const std::uint32_t width_;
   const FloodLens& lens_;
-  const float* place_;
+  const float* points_;
   const std::int32_t* normal_;
 };
 
-HWY_INLINE Floats dot(Floats ax, Floats ay, Floats az, Floats bx, Floats by, Floats bz) {
-  return ax * bx + ay * by + az * bz;
-}
+struct Triple {
+  Floats x, y, z;
+};
+
+HWY_INLINE Floats dot(const Triple& a, const Triple& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+HWY_INLINE Triple normalOf(const Seeds& seeds) { return {seeds.normalX, seeds.normalY, seeds.normalZ}; }
+
+HWY_INLINE Triple difference(const Seeds& a, const Seeds& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
 HWY_INLINE Floats distance2(const Seeds& a, const Seeds& b) {
-  const auto x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  return dot(x, y, z, x, y, z);
+  const Triple apart = difference(a, b);
+  return dot(apart, apart);
 }
 
 /// sameLayer() of seeds that lie this far from each other.
@@ -83,12 +89,10 @@ HWY_INLINE Mask same(const Seeds& a, const Seeds& b, Floats distance2, bool norm
   const auto reach = hn::Min(a.reach, b.reach);
   const auto near = hn::Le(distance2, reach * reach);
   if (!normals || hn::AllFalse(kFloat, near)) return near;
-  const auto isNone = [](const Seeds& s) {
-    return hn::Eq(dot(s.normalX, s.normalY, s.normalZ, s.normalX, s.normalY, s.normalZ), hn::Zero(kFloat));
-  };
-  const auto x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
-  const auto off = [&](const Seeds& s) { return hn::Abs(dot(x, y, z, s.normalX, s.normalY, s.normalZ)); };
-  const auto cosine = hn::Abs(dot(a.normalX, a.normalY, a.normalZ, b.normalX, b.normalY, b.normalZ));
+  const auto isNone = [](const Seeds& s) { return hn::Eq(dot(normalOf(s), normalOf(s)), hn::Zero(kFloat)); };
+  const Triple apart = difference(a, b);
+  const auto off = [&](const Seeds& s) { return hn::Abs(dot(apart, normalOf(s))); };
+  const auto cosine = hn::Abs(dot(normalOf(a), normalOf(b)));
   const auto alike = hn::And(hn::Ge(cosine, hn::Set(kFloat, settings.angle)),
                              hn::Lt(hn::Max(off(a), off(b)), hn::Set(kFloat, settings.continuity) * reach));
   return hn::And(near, hn::Or(hn::Or(isNone(a), isNone(b)), alike));
@@ -112,13 +116,13 @@ class LayerSearch {
         y_(hn::Set(kFloat, static_cast<float>(y))),
         here_(round.from.index(x, y)) {
     for (int k = 0; k < kFloodLayers; ++k)
-      hn::Store(hn::LoadU(kWord, &round.from.planes[k][here_]), kWord, held_[k].seed);
+      hn::Store(hn::LoadU(kWord, &round.from.layers[k][here_]), kWord, held_[k].seed);
   }
 
   /// The candidates that the pixels at `from` hold.
   HWY_INLINE void look(std::size_t from) {
-    for (const auto& plane : round_.from.planes) {
-      const auto seed = hn::LoadU(kWord, &plane[from]);
+    for (const auto& layer : round_.from.layers) {
+      const auto seed = hn::LoadU(kWord, &layer[from]);
       const auto some = hn::And(inside_, toMask(hn::Ne(seed, hn::Set(kWord, kNoPixel))));
       if (hn::AllFalse(kFloat, some)) return;
       auto known = hn::Eq(seed, heldSeed(0));
@@ -129,7 +133,7 @@ class LayerSearch {
   }
 
   void store() const {
-    for (int k = 0; k < kFloodLayers; ++k) hn::StoreU(heldSeed(k), kWord, &round_.to.planes[k][here_]);
+    for (int k = 0; k < kFloodLayers; ++k) hn::StoreU(heldSeed(k), kWord, &round_.to.layers[k][here_]);
   }
 
  private:
@@ -261,7 +265,7 @@ void distancesToHere(const FloodSeeds& seeds, FloodPixel seed, const FloodNeighb
 }
 
 std::size_t keepCloseHere(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
-                          const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distances) {
+                          std::span<const FloodPixel> candidates, const CloseCandidates& kept) {
   HWY_ALIGN FloodPixel held[kFloodTile];
   HWY_ALIGN float farthest2[kFloodTile];
   for (std::size_t i = 0; i < kFloodTile; ++i) {
@@ -273,13 +277,13 @@ std::size_t keepCloseHere(const FloodSeeds& seeds, const FloodSettings& settings
   const auto x = hn::Set(kFloat, static_cast<float>(pixelColumn(bounds.seed)));
   const auto y = hn::Set(kFloat, static_cast<float>(pixelRow(bounds.seed)));
   std::size_t out = 0;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(kFloat)) {
-    const auto seed = hn::LoadU(kWord, candidates + i);
+  for (std::size_t i = 0; i < candidates.size(); i += hn::Lanes(kFloat)) {
+    const auto seed = hn::LoadU(kWord, candidates.data() + i);
     const auto dx = toFloat(column(seed)) - x, dy = toFloat(row(seed)) - y;
     const auto which = sector(dx, dy);
     const auto most = lookUp(kFloat, farthest2, which);
     const auto fresh =
-        hn::And(hn::And(hn::FirstN(kWord, count - i), hn::Ne(seed, hn::Set(kWord, kNoPixel))),
+        hn::And(hn::And(hn::FirstN(kWord, candidates.size() - i), hn::Ne(seed, hn::Set(kWord, kNoPixel))),
                 hn::And(hn::Ne(seed, hn::Set(kWord, bounds.seed)), hn::Ne(seed, lookUp(kWord, held, which))));
     auto close = hn::And(toMask(fresh), hn::Le(hn::Set(kFloat, bounds.leastPerPixel2) * (dx * dx + dy * dy), most));
     if (hn::AllFalse(kFloat, close)) continue;
@@ -287,8 +291,8 @@ std::size_t keepCloseHere(const FloodSeeds& seeds, const FloodSettings& settings
     const auto distance = distance2(one, others);
     close = hn::And(hn::And(close, hn::Le(distance, most)), same(one, others, distance, table.hasNormals(), settings));
     // Whole vectors: compressing straight into memory takes some processors a hundred cycles.
-    hn::StoreU(hn::Compress(distance, close), kFloat, distances + out);
-    hn::StoreU(hn::Compress(seed, toWord(close)), kWord, kept + out);
+    hn::StoreU(hn::Compress(distance, close), kFloat, kept.distance2 + out);
+    hn::StoreU(hn::Compress(seed, toWord(close)), kWord, kept.seeds + out);
     out += hn::CountTrue(kFloat, close);
   }
   return out;
@@ -313,8 +317,8 @@ void distancesTo(const FloodSeeds& seeds, FloodPixel seed, const FloodNeighbours
 }
 
 std::size_t keepClose(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
-                      const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distance2) {
-  return HWY_DYNAMIC_DISPATCH(keepCloseHere)(seeds, settings, bounds, candidates, count, kept, distance2);
+                      std::span<const FloodPixel> candidates, const CloseCandidates& kept) {
+  return HWY_DYNAMIC_DISPATCH(keepCloseHere)(seeds, settings, bounds, candidates, kept);
 }
 
 }  // namespace strata

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "render/flood/flood_neighbourhood.h"
@@ -11,22 +12,22 @@ namespace strata {
 
 /// FloodLayers while they are searched, plane by plane. Rows have a margin to both sides that holds none, so that jumps
 /// need not ask whether they leave the picture.
-struct LayerPlanes {
+struct LayerArrays {
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(margin + x);
   }
 
   std::size_t stride;
   int margin;
-  std::vector<FloodPixel> planes[kFloodLayers];
+  std::vector<FloodPixel> layers[kFloodLayers];
 };
 
 /// One round of the layer search.
 struct LayerRound {
   const FloodSeeds& seeds;
   const FloodSettings& settings;
-  const LayerPlanes& from;
-  LayerPlanes& to;
+  const LayerArrays& from;
+  LayerArrays& to;
   int step;
 };
 /// Pixels [x, x + kFloodTile) of row y look at the eight pixels `step` away.
@@ -42,9 +43,14 @@ struct NeighbourBounds {
   float farthest2[kFloodNeighbours];  ///< squared metres by floodSector(); infinite where there is none yet
   FloodPixel held[kFloodNeighbours];  ///< by floodSector(); these are no candidates
 };
-/// Those of `count` candidates that may become neighbours, and how far away they are, squared. Each of the three arrays
-/// has room for kFloodTile more. Returns how many.
+/// Where keepClose() writes the candidates that it keeps. Both arrays have room for kFloodTile more.
+struct CloseCandidates {
+  FloodPixel* seeds;
+  float* distance2;  ///< squared metres
+};
+/// Writes those of `candidates` that may become neighbours within `bounds`, and returns how many they are. Memory
+/// behind the candidates must be readable for kFloodTile more.
 std::size_t keepClose(const FloodSeeds& seeds, const FloodSettings& settings, const NeighbourBounds& bounds,
-                      const FloodPixel* candidates, std::size_t count, FloodPixel* kept, float* distance2);
+                      std::span<const FloodPixel> candidates, const CloseCandidates& kept);
 
 }  // namespace strata

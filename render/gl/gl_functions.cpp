@@ -1,5 +1,6 @@
 #include "render/gl/gl_functions.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "core/error.h"
@@ -35,6 +36,12 @@ bool hasExtension(const GlFunctions& functions, std::string_view name) {
     if (text != nullptr && name == reinterpret_cast<const char*>(text)) return true;
   }
   return false;
+}
+
+std::uint64_t largestStorageBlock(const GlFunctions& functions) {
+  long long bytes = 0;
+  functions.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
+  return static_cast<std::uint64_t>(std::max(bytes, 0LL));
 }
 
 std::string glRenderer(const GlFunctions& functions) {

@@ -162,10 +162,13 @@ inline constexpr unsigned kBufferUpdateBarrier = 0x0200;
 inline constexpr unsigned kShaderStorageBarrier = 0x2000;
 }  // namespace gl
 
-/// Of the current context. Throws Error when it is older than OpenGL 4.3 or lacks a function.
+/// The functions of `context`, which is current. Throws Error where it is older than OpenGL 4.3 or lacks a function.
 GlFunctions loadGlFunctions(GlContext& context);
 
 bool hasExtension(const GlFunctions& functions, std::string_view name);
+
+/// The largest range of bytes that a shader may see through one binding of a storage buffer.
+std::uint64_t largestStorageBlock(const GlFunctions& functions);
 
 /// The device and its driver: "llvmpipe (LLVM 15.0.6, 256 bits), driver 4.5 (Core Profile) Mesa 22.3.6".
 std::string glRenderer(const GlFunctions& functions);

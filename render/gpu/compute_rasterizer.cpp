@@ -86,17 +86,17 @@ class ComputeRasterizer final : public Rasterizer {
 
   ~ComputeRasterizer() override { scene_.makeCurrent(); }
 
-  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) override {
-    return drawViews(list, {&view, 1}, options, {&frame, 1});
+  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& picture) override {
+    return drawViews(list, {&view, 1}, options, {&picture, 1});
   }
 
   DrawStats drawViews(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                      std::span<Picture> frames) override {
+                      std::span<Picture> pictures) override {
     DrawStats sum;
-    const std::size_t count = std::min(views.size(), frames.size());
+    const std::size_t count = std::min(views.size(), pictures.size());
     for (std::size_t first = 0; first < count; first += STRATA_MOST_VIEWS) {
       const std::size_t now = std::min<std::size_t>(count - first, STRATA_MOST_VIEWS);
-      addStats(drawAtOnce(list, views.subspan(first, now), options, frames.subspan(first, now)), sum);
+      addStats(drawAtOnce(list, views.subspan(first, now), options, pictures.subspan(first, now)), sum);
     }
     return sum;
   }
@@ -108,7 +108,7 @@ class ComputeRasterizer final : public Rasterizer {
 
  private:
   DrawStats drawAtOnce(const RenderList& list, std::span<const View> views, const DrawOptions& options,
-                       std::span<Picture> frames) {
+                       std::span<Picture> pictures) {
     Stopwatch watch;
     scene_.makeCurrent();
     const bool counts = options.colour == ColourMode::overdraw;
@@ -127,7 +127,7 @@ class ComputeRasterizer final : public Rasterizer {
     scene_.gl().UseProgram(0);
     stats.drawMs = watch.lapMs();
     for (std::size_t v = 0; v < views.size(); ++v)
-      resolveFrame(list, views[v], options, buffers_[v], pool_, frames[v], &flood_);
+      resolvePicture({list, views[v], options}, {pool_, &flood_}, buffers_[v], pictures[v]);
     stats.resolveMs = watch.lapMs();
     return stats;
   }

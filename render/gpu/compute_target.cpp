@@ -12,11 +12,8 @@ ComputeTarget::ComputeTarget(const GlFunctions& functions, ComputeWay way)
       ids_(functions, 0, gl::kDynamicCopy),
       locks_(functions, 0, gl::kDynamicCopy),
       candidates_(functions, 0, gl::kDynamicCopy),
-      sums_(functions, 0, gl::kDynamicCopy) {
-  long long bytes = 0;
-  gl_.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
-  largestBlock_ = static_cast<std::uint64_t>(std::max(bytes, 0LL));
-}
+      sums_(functions, 0, gl::kDynamicCopy),
+      largestBlock_(largestStorageBlock(functions)) {}
 
 std::vector<Band> ComputeTarget::begin(std::span<const VisibilityBuffer> views, bool sums, bool counts) {
   hasSums_ = sums;
@@ -40,13 +37,13 @@ std::vector<Band> ComputeTarget::begin(std::span<const VisibilityBuffer> views, 
 }
 
 void ComputeTarget::beginBand(const Band& band) {
-  parts_.clear();
+  rows_.clear();
   pixels_ = 0;
   for (std::size_t v = 0; v < widths_.size(); ++v) {
-    Part part{pixels_, std::min(band.first, heights_[v]), std::min(band.end, heights_[v]), 0};
-    part.count = static_cast<std::size_t>(part.end - part.begin) * static_cast<std::size_t>(widths_[v]);
-    pixels_ += part.count;
-    parts_.push_back(part);
+    ViewRows rows{pixels_, std::min(band.first, heights_[v]), std::min(band.end, heights_[v]), 0};
+    rows.count = static_cast<std::size_t>(rows.end - rows.begin) * static_cast<std::size_t>(widths_[v]);
+    pixels_ += rows.count;
+    rows_.push_back(rows);
   }
   const auto farthest = static_cast<std::uint32_t>(kEmptyPixel >> 32);
   const std::uint64_t words = std::max<std::uint64_t>(pixels_, 1) * sizeof(std::uint32_t);
@@ -84,28 +81,28 @@ void ComputeTarget::bindSums() {
 }
 
 void ComputeTarget::setUniforms() const {
-  std::vector<glm::ivec3> parts;
-  for (const Part& part : parts_) parts.emplace_back(static_cast<int>(part.first), part.begin, part.end);
-  gl_.Uniform3iv(STRATA_UNIFORM_PIXELS, static_cast<int>(parts.size()), &parts[0].x);
+  std::vector<glm::ivec3> uniforms;
+  for (const ViewRows& rows : rows_) uniforms.emplace_back(static_cast<int>(rows.first), rows.begin, rows.end);
+  gl_.Uniform3iv(STRATA_UNIFORM_PIXELS, static_cast<int>(uniforms.size()), &uniforms[0].x);
 }
 
 void ComputeTarget::read(std::span<VisibilityBuffer> views) {
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const Part& part = parts_[v];
-    if (part.count == 0) continue;
+    const ViewRows& rows = rows_[v];
+    if (rows.count == 0) continue;
     VisibilityBuffer& view = views[v];
-    const std::size_t at = static_cast<std::size_t>(part.begin) * static_cast<std::size_t>(view.width);
+    const std::size_t at = static_cast<std::size_t>(rows.begin) * static_cast<std::size_t>(view.width);
     if (wide_) {
-      depths_.read(part.first * sizeof(PackedPixel), &view.pixels[at], part.count * sizeof(PackedPixel));
+      depths_.read(rows.first * sizeof(PackedPixel), &view.pixels[at], rows.count * sizeof(PackedPixel));
     } else {
-      hostDepths_.resize(part.count);
-      hostIds_.resize(part.count);
-      depths_.read(part.first * 4, hostDepths_.data(), part.count * 4);
-      ids_.read(part.first * 4, hostIds_.data(), part.count * 4);
-      for (std::size_t i = 0; i < part.count; ++i) view.pixels[at + i] = packPixel(hostDepths_[i], hostIds_[i]);
+      hostDepths_.resize(rows.count);
+      hostIds_.resize(rows.count);
+      depths_.read(rows.first * 4, hostDepths_.data(), rows.count * 4);
+      ids_.read(rows.first * 4, hostIds_.data(), rows.count * 4);
+      for (std::size_t i = 0; i < rows.count; ++i) view.pixels[at + i] = packPixel(hostDepths_[i], hostIds_[i]);
     }
-    if (hasSums_) sums_.read(part.first * sizeof(ColourSum), &view.sums[at], part.count * sizeof(ColourSum));
-    if (hasCounts_) sums_.read(part.first * 4, &view.counts[at], part.count * 4);
+    if (hasSums_) sums_.read(rows.first * sizeof(ColourSum), &view.sums[at], rows.count * sizeof(ColourSum));
+    if (hasCounts_) sums_.read(rows.first * 4, &view.counts[at], rows.count * 4);
   }
 }
 

@@ -36,7 +36,7 @@ class ComputeTarget {
   void read(std::span<VisibilityBuffer> views);
 
  private:
-  struct Part {
+  struct ViewRows {
     std::size_t first = 0;   ///< pixel in the buffers
     int begin = 0, end = 0;  ///< rows
     std::size_t count = 0;
@@ -46,10 +46,10 @@ class ComputeTarget {
   const bool wide_;  ///< depth and id in one 64-bit word
   const bool locked_;
   GlBuffer depths_, ids_, locks_, candidates_, sums_;
-  std::uint64_t largestBlock_ = 0;
+  const std::uint64_t largestBlock_;  ///< bytes
   std::vector<int> widths_, heights_;
-  std::vector<Part> parts_;  ///< of the band, one a view
-  std::size_t pixels_ = 0;   ///< of the band
+  std::vector<ViewRows> rows_;  ///< of the band, one a view
+  std::size_t pixels_ = 0;      ///< of the band
   bool hasSums_ = false, hasCounts_ = false;
   std::vector<std::uint32_t> hostDepths_, hostIds_;
 };

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/gl/gl_context.h"
+#include "render/gl/gl_device.h"
 #include "render/gl/gl_objects.h"
 #include "render/gl/shader_variant.h"
 #include "render/gpu/gpu_node_store.h"
@@ -14,11 +15,6 @@
 #include "render/shaders/shader_types.h"
 
 namespace strata {
-
-/// As shaders read it.
-shader::GridRecord gridRecord(const GridTransform& grid);
-/// Numbers of boxes, planes, cutouts, as shaders read them.
-glm::ivec3 clipCounts(const Clip& clip);
 
 /// Batches whose nodes lie in one page; their records are consecutive.
 struct PageRun {
@@ -36,13 +32,11 @@ class GlScene {
   /// Throws Error where the context has no OpenGL 4.3.
   GlScene(std::unique_ptr<GlContext> context, const RasterizerOptions& options);
 
-  /// Owners of GL objects call it before they destroy them.
-  void makeCurrent() { context_->makeCurrent(); }
-  const GlFunctions& gl() const { return gl_; }
-  const std::string& renderer() const { return renderer_; }
-  /// Threads of a work-group that draws one batch: Schütz's 128 on a GPU. Mesa's llvmpipe runs the threads of a group
-  /// one vector after the other, each through the whole batch, so there a group is one vector.
-  std::uint32_t groupSize() const { return software_ ? 8 : 128; }
+  /// The owners of GL objects call this before they destroy them.
+  void makeCurrent() const { device_.makeCurrent(); }
+  const GlFunctions& gl() const { return device_.gl(); }
+  const std::string& renderer() const { return device_.renderer(); }
+  std::uint32_t groupSize() const { return device_.groupSize(); }
 
   /// Compiles plan.comp. Throws Error where the driver cannot.
   void compile() { plans_.get({}); }
@@ -75,20 +69,17 @@ class GlScene {
  private:
   struct PreparedDraw;
 
-  void addItem(PreparedDraw& frame, std::uint32_t item, std::uint32_t firstId);
-  bool addParts(PreparedDraw& frame, const NodeData& node, const GpuNode& place, std::uint32_t prefix,
+  void addItem(PreparedDraw& draw, std::uint32_t item, std::uint32_t firstId);
+  bool addParts(PreparedDraw& draw, const NodeData& node, const GpuNode& gpuNode, std::uint32_t prefix,
                 std::uint32_t firstId);
-  void addPlanned(PreparedDraw& frame);
-  void layRuns(PreparedDraw& frame);
-  void upload(const PreparedDraw& frame);
+  void addPlanned(PreparedDraw& draw);
+  void layRuns(PreparedDraw& draw);
+  void upload(const PreparedDraw& draw);
 
-  std::unique_ptr<GlContext> context_;
-  GlFunctions gl_;
-  std::string renderer_;
-  const bool software_;
+  const GlDevice device_;
   GpuNodeStore nodes_;
   ProgramCache plans_;
-  GlBuffer recordBuffer_, placeBuffer_, gridBuffer_, partBuffer_, viewBuffer_, runBuffer_, counters_;
+  GlBuffer recordBuffer_, batchViewBuffer_, gridBuffer_, partBuffer_, viewBuffer_, runBuffer_, counters_;
   ShaderVariant variant_;
   std::vector<ViewConstants> constants_;
   std::bitset<256> classes_;

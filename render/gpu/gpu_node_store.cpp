@@ -11,19 +11,13 @@ namespace {
 
 constexpr int kErrorFlags = 16;  ///< more than a driver keeps; a lost context would report for ever
 
-std::uint64_t largestBlock(const GlFunctions& gl) {
-  long long bytes = 0;
-  gl.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
-  return static_cast<std::uint64_t>(std::max(bytes, 0LL));
-}
-
 }  // namespace
 
 GpuNodeStore::GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame,
                            std::uint32_t groupSize)
     : gl_(functions),
       maxBytes_(gpuBytes),
-      maxPageBytes_(std::min(kPageBytes, largestBlock(functions))),
+      maxPageBytes_(std::min(kPageBytes, largestStorageBlock(functions))),
       uploadBytesPerFrame_(uploadBytesPerFrame),
       groupSize_(groupSize),
       staging_(functions, kPartBytes) {}
@@ -54,64 +48,64 @@ const GpuNode* GpuNodeStore::require(const std::shared_ptr<const NodeData>& node
     if (room && needs.colours && entry.colourKey != needs.colourKey) {
       const std::uint64_t bytes = std::uint64_t{node->pointCount()} * 4;
       if (!withinBudget(bytes)) return nullptr;
-      for (const GpuPart& part : entry.place.parts) writeColours(*node, part, needs);
+      for (const NodePart& part : entry.gpuNode.parts) writeColours(*node, part, needs);
       entry.colourKey = needs.colourKey;
       uploadedBytes_ += bytes;
     }
-    if (room) return &entry.place;
+    if (room) return &entry.gpuNode;
     all.classes = all.classes || entry.classes;
   }
   std::uint64_t bytes = 0;
-  for (const GpuPart& part : splitNode(*node, all, std::min(kPartBytes, maxPageBytes_), groupSize_))
+  for (const NodePart& part : splitNode(*node, all, std::min(kPartBytes, maxPageBytes_), groupSize_))
     bytes += partWords(part, node->loadedPlanes(), all) * 4;
   if (bytes == 0 || !withinBudget(bytes)) return nullptr;
   if (found != index_.end()) erase(found->second);
   const auto entry = upload(node, all);
-  return entry == entries_.end() ? nullptr : &entry->place;
+  return entry == entries_.end() ? nullptr : &entry->gpuNode;
 }
 
 GpuNodeStore::Entries::iterator GpuNodeStore::upload(const std::shared_ptr<const NodeData>& node,
                                                      const NodeNeeds& needs) {
-  GpuNode place;
-  place.planes = node->loadedPlanes();
-  findGrid(*node, place);
+  GpuNode gpuNode;
+  gpuNode.planes = node->loadedPlanes();
+  findGrid(*node, gpuNode);
   std::vector<std::uint32_t> words;
-  for (GpuPart part : splitNode(*node, needs, std::min(kPartBytes, maxPageBytes_), groupSize_)) {
-    const auto length = static_cast<std::uint32_t>(partWords(part, place.planes, needs));
+  for (NodePart part : splitNode(*node, needs, std::min(kPartBytes, maxPageBytes_), groupSize_)) {
+    const auto length = static_cast<std::uint32_t>(partWords(part, gpuNode.planes, needs));
     if (!allocate(length, part)) {
-      releaseParts(place, words);
+      releaseParts(gpuNode, words);
       return entries_.end();
     }
-    layOut(part, part.firstBox, place.planes, needs);
-    place.parts.push_back(part);
+    layOut(part, part.firstBox, gpuNode.planes, needs);
+    gpuNode.parts.push_back(part);
     words.push_back(length);
   }
-  for (std::size_t i = 0; i < place.parts.size(); ++i) {
-    writePart(*node, place, place.parts[i], words[i], needs);
+  for (std::size_t i = 0; i < gpuNode.parts.size(); ++i) {
+    writePart(*node, gpuNode, gpuNode.parts[i], words[i], needs);
     uploadedBytes_ += std::uint64_t{words[i]} * 4;
   }
   entries_.push_back(
-      {node.get(), node, std::move(place), std::move(words), needs.classes, needs.colours, needs.colourKey, frame_});
+      {node.get(), node, std::move(gpuNode), std::move(words), needs.classes, needs.colours, needs.colourKey, frame_});
   index_[node.get()] = std::prev(entries_.end());
   return std::prev(entries_.end());
 }
 
-void GpuNodeStore::writePart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t words,
+void GpuNodeStore::writePart(const NodeData& node, const GpuNode& gpuNode, const NodePart& part, std::uint32_t words,
                              const NodeNeeds& needs) {
   const std::span<std::uint32_t> room = staging_.room(words);
   std::fill(room.begin(), room.end(), 0);
-  fillPart(node, place, part, groupSize_, room);
+  fillPart(node, gpuNode, part, groupSize_, room);
   staging_.send(pages_[part.page]->buffer, std::uint64_t{part.firstBox} * 4);
   if (needs.colours) writeColours(node, part, needs);
 }
 
-void GpuNodeStore::writeColours(const NodeData& node, const GpuPart& part, const NodeNeeds& needs) {
+void GpuNodeStore::writeColours(const NodeData& node, const NodePart& part, const NodeNeeds& needs) {
   pointColours(node, part.firstPoint, *needs.options, Precision::low10, staging_.room(part.pointCount));
   staging_.send(pages_[part.page]->buffer, std::uint64_t{part.firstColour} * 4);
 }
 
 /// Evicts as long as that can help.
-bool GpuNodeStore::allocate(std::uint32_t words, GpuPart& part) {
+bool GpuNodeStore::allocate(std::uint32_t words, NodePart& part) {
   for (;;) {
     for (std::uint32_t page = 0; page < pages_.size(); ++page) {
       if (const auto first = pages_[page]->allocator.allocate(words)) {
@@ -149,13 +143,13 @@ bool GpuNodeStore::addPage(std::uint32_t words) {
   return false;
 }
 
-void GpuNodeStore::releaseParts(const GpuNode& place, const std::vector<std::uint32_t>& words) {
-  for (std::size_t i = 0; i < place.parts.size(); ++i)
-    pages_[place.parts[i].page]->allocator.release(place.parts[i].firstBox, words[i]);
+void GpuNodeStore::releaseParts(const GpuNode& gpuNode, const std::vector<std::uint32_t>& words) {
+  for (std::size_t i = 0; i < gpuNode.parts.size(); ++i)
+    pages_[gpuNode.parts[i].page]->allocator.release(gpuNode.parts[i].firstBox, words[i]);
 }
 
 GpuNodeStore::Entries::iterator GpuNodeStore::erase(Entries::iterator entry) {
-  releaseParts(entry->place, entry->words);
+  releaseParts(entry->gpuNode, entry->words);
   index_.erase(entry->key);
   return entries_.erase(entry);
 }

@@ -49,7 +49,7 @@ class GpuNodeStore {
   struct Entry {
     const NodeData* key;
     std::weak_ptr<const NodeData> node;
-    GpuNode place;
+    GpuNode gpuNode;
     std::vector<std::uint32_t> words;  ///< of each part
     bool classes, colours;             ///< there is room for them
     std::uint64_t colourKey;
@@ -59,12 +59,12 @@ class GpuNodeStore {
 
   bool withinBudget(std::uint64_t bytes);
   Entries::iterator upload(const std::shared_ptr<const NodeData>& node, const NodeNeeds& needs);
-  bool allocate(std::uint32_t words, GpuPart& part);
+  bool allocate(std::uint32_t words, NodePart& part);
   bool addPage(std::uint32_t words);
-  void releaseParts(const GpuNode& place, const std::vector<std::uint32_t>& words);
-  void writePart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t words,
+  void releaseParts(const GpuNode& gpuNode, const std::vector<std::uint32_t>& words);
+  void writePart(const NodeData& node, const GpuNode& gpuNode, const NodePart& part, std::uint32_t words,
                  const NodeNeeds& needs);
-  void writeColours(const NodeData& node, const GpuPart& part, const NodeNeeds& needs);
+  void writeColours(const NodeData& node, const NodePart& part, const NodeNeeds& needs);
   Entries::iterator erase(Entries::iterator entry);
 
   const GlFunctions& gl_;

@@ -9,7 +9,7 @@
 namespace strata {
 
 /// Consecutive batches of a node as they lie in one page: their boxes, then their points' planes, classes, colours.
-struct GpuPart {
+struct NodePart {
   std::uint32_t page = 0;
   std::uint32_t firstBox = 0;  ///< word of the page; a shader::BatchBox each
   std::uint32_t boxCount = 0;
@@ -23,7 +23,7 @@ struct GpuPart {
 };
 
 struct GpuNode {
-  std::vector<GpuPart> parts;  ///< by ascending firstPoint
+  std::vector<NodePart> parts;  ///< by ascending firstPoint
   int planes = 0;
   bool oneGrid = false;         ///< all batches stand on the grid of the first; then:
   glm::dvec3 step{0.0};         ///< metres
@@ -40,8 +40,8 @@ struct NodeNeeds {
 
 /// Splits a node into parts of at most `partBytes` and kMostBoxes batches, each as yet without a page. None where a
 /// batch is longer than that.
-std::vector<GpuPart> splitNode(const NodeData& node, const NodeNeeds& needs, std::uint64_t partBytes,
-                               std::uint32_t groupSize);
+std::vector<NodePart> splitNode(const NodeData& node, const NodeNeeds& needs, std::uint64_t partBytes,
+                                std::uint32_t groupSize);
 
 inline constexpr std::uint32_t kMostBoxes = 65535;  ///< work-groups in one dispatch, which OpenGL guarantees
 
@@ -49,16 +49,16 @@ inline constexpr std::uint32_t kMostBoxes = 65535;  ///< work-groups in one disp
 std::uint32_t candidateWords(std::uint32_t pointsBefore, std::uint32_t points, std::uint32_t groupSize);
 
 /// Words that a part takes.
-std::uint64_t partWords(const GpuPart& part, int planes, const NodeNeeds& needs);
+std::uint64_t partWords(const NodePart& part, int planes, const NodeNeeds& needs);
 
 /// Places what a part holds one after the other from `word` on, which is a multiple of 4.
-void layOut(GpuPart& part, std::uint32_t word, int planes, const NodeNeeds& needs);
+void layOut(NodePart& part, std::uint32_t word, int planes, const NodeNeeds& needs);
 
 /// Whether all batches of a node stand on one grid, and that grid.
-void findGrid(const NodeData& node, GpuNode& place);
+void findGrid(const NodeData& node, GpuNode& gpuNode);
 
 /// Everything but the colours; `words` are those of the part, from firstBox on.
-void fillPart(const NodeData& node, const GpuNode& place, const GpuPart& part, std::uint32_t groupSize,
+void fillPart(const NodeData& node, const GpuNode& gpuNode, const NodePart& part, std::uint32_t groupSize,
               std::span<std::uint32_t> words);
 
 }  // namespace strata

@@ -101,7 +101,7 @@ class PointsRasterizer final : public Rasterizer {
     scene_.gl().DeleteVertexArrays(1, &vertexArray_);
   }
 
-  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) override {
+  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& picture) override {
     Stopwatch watch;
     scene_.makeCurrent();
     DrawStats stats = scene_.prepare(list, {&view, 1}, options, {});
@@ -115,7 +115,7 @@ class PointsRasterizer final : public Rasterizer {
     buffer_.counts.assign(counts ? buffer_.pixels.size() : 0, 0);
     if (!buffer_.pixels.empty()) drawPoints(counts, stats);
     stats.drawMs = watch.lapMs();
-    resolveFrame(list, view, options, buffer_, pool_, frame, &flood_);
+    resolvePicture({list, view, options}, {pool_, &flood_}, buffer_, picture);
     stats.resolveMs = watch.lapMs();
     return stats;
   }

@@ -97,20 +97,20 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
   });
 }
 
-void eyeDomeLighting(Picture& frame, float strength, const PointSizes& sizes, std::vector<float>& scratch,
+void eyeDomeLighting(Picture& picture, float strength, const PointSizes& sizes, std::vector<float>& scratch,
                      const ThreadPool& pool) {
-  const auto width = static_cast<std::size_t>(frame.width);
-  const auto height = static_cast<std::size_t>(frame.height);
-  scratch.resize(frame.depth.size());
+  const auto width = static_cast<std::size_t>(picture.width);
+  const auto height = static_cast<std::size_t>(picture.height);
+  scratch.resize(picture.depth.size());
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    log2Row(frame.depth.data() + begin * width, scratch.data() + begin * width, (end - begin) * width);
+    log2Row(picture.depth.data() + begin * width, scratch.data() + begin * width, (end - begin) * width);
   });
   const auto shadeSpan = [&](std::size_t y, std::size_t begin, std::size_t end, int size) {
     const auto apart = static_cast<std::size_t>(size);
     const float* above = &scratch[(y - std::min(y, apart)) * width];
     const float* below = &scratch[std::min(y + apart, height - 1) * width];
     const float gain = kEdlGain / 8.0f * strength / static_cast<float>(size);
-    shadeRow({above, &scratch[y * width], below, width, apart}, begin, end, gain, &frame.colour[y * width]);
+    shadeRow({above, &scratch[y * width], below, width, apart}, begin, end, gain, &picture.colour[y * width]);
   };
   pool.parallelFor(height, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t y = begin; y < end; ++y) {
@@ -119,8 +119,8 @@ void eyeDomeLighting(Picture& frame, float strength, const PointSizes& sizes, st
         continue;
       }
       for (std::size_t x = 0, next; x < width; x = next) {  // run by run of one size
-        const int size = sizes.at(frame.depth[y * width + x]);
-        for (next = x + 1; next < width && sizes.at(frame.depth[y * width + next]) == size;) ++next;
+        const int size = sizes.at(picture.depth[y * width + x]);
+        for (next = x + 1; next < width && sizes.at(picture.depth[y * width + next]) == size;) ++next;
         shadeSpan(y, x, next, size);
       }
     }

@@ -65,7 +65,7 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
 /// in log2 of the depth, so that the effect does not depend on the scene's scale. The background stays.
 /// Neighbours are as far away as points are wide, so that single points of a slope do not get outlines.
 /// `scratch` is memory to work in, of any size.
-void eyeDomeLighting(Picture& frame, float strength, const PointSizes& sizes, std::vector<float>& scratch,
+void eyeDomeLighting(Picture& picture, float strength, const PointSizes& sizes, std::vector<float>& scratch,
                      const ThreadPool& pool);
 
 }  // namespace strata

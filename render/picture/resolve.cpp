@@ -54,41 +54,41 @@ class Colouring {
  private:
   void copyRgb(std::size_t begin, std::size_t end, std::uint32_t* out) const {
     static const std::uint32_t missing = missingColour();
-    const std::uint32_t* places[kPixelsAhead];
+    const std::uint32_t* found[kPixelsAhead];
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t id = pixelId(buffer_.pixels[i]);
-      places[i - begin] = &missing;
+      found[i - begin] = &missing;
       if (id == Picture::kNoPoint) continue;
-      const PointPlace place = lookup_.find(id);
-      if (!place.node->colour.empty()) places[i - begin] = &place.node->colour[place.index];
-      __builtin_prefetch(places[i - begin]);
+      const PointLocation location = lookup_.find(id);
+      if (!location.node->colour.empty()) found[i - begin] = &location.node->colour[location.index];
+      __builtin_prefetch(found[i - begin]);
     }
-    for (std::size_t i = begin; i < end; ++i) out[i - begin] = *places[i - begin];
+    for (std::size_t i = begin; i < end; ++i) out[i - begin] = *found[i - begin];
   }
 
   void colourSome(std::size_t begin, std::size_t end, std::uint32_t* out) const {
-    PointPlace places[kPixelsAhead];
+    PointLocation locations[kPixelsAhead];
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t id = pixelId(buffer_.pixels[i]);
-      places[i - begin] = id == Picture::kNoPoint || blended_ ? PointPlace{} : lookup_.find(id);
-      if (places[i - begin].node != nullptr)
-        prefetchColour(*places[i - begin].node, places[i - begin].index, options_.colour);
+      locations[i - begin] = id == Picture::kNoPoint || blended_ ? PointLocation{} : lookup_.find(id);
+      if (locations[i - begin].node != nullptr)
+        prefetchColour(*locations[i - begin].node, locations[i - begin].index, options_.colour);
     }
     for (std::size_t i = begin; i < end; ++i)
-      if (pixelId(buffer_.pixels[i]) != Picture::kNoPoint) out[i - begin] = colourOne(i, places[i - begin]);
+      if (pixelId(buffer_.pixels[i]) != Picture::kNoPoint) out[i - begin] = colourOne(i, locations[i - begin]);
   }
 
-  std::uint32_t colourOne(std::size_t pixel, const PointPlace& place) const {
+  std::uint32_t colourOne(std::size_t pixel, const PointLocation& location) const {
     if (largestCount_ > 0) return heat(buffer_.counts[pixel]);
     if (blended_) return buffer_.sums[pixel].count() > 0 ? meanColour(buffer_.sums[pixel]) : missingColour();
-    return options_.colour == ColourMode::precision ? precisionColour(precision(place)) : plain(place);
+    return options_.colour == ColourMode::precision ? precisionColour(precision(location)) : plain(location);
   }
 
-  std::uint32_t plain(const PointPlace& place) const {
-    return pointColour(*place.node, place.index, options_, Precision::low10);
+  std::uint32_t plain(const PointLocation& location) const {
+    return pointColour(*location.node, location.index, options_, Precision::low10);
   }
-  int precision(const PointPlace& place) const {
-    return static_cast<int>(batchPrecision(constants_, *place.node, batchOf(*place.node, place.index)));
+  int precision(const PointLocation& location) const {
+    return static_cast<int>(batchPrecision(constants_, *location.node, batchOf(*location.node, location.index)));
   }
   std::uint32_t heat(std::uint32_t count) const {
     return heatColour(std::log2(std::max(count, 1u)) / std::log2(largestCount_));
@@ -119,62 +119,63 @@ void pointAtPixels(VisibilityBuffer& buffer, std::size_t begin, std::size_t end)
   }
 }
 
-/// Fills row y of the frame from the buffer, whose pixels say where their colour and id stand in `colours` and `ids`;
-/// with `ids` null they hold their ids, and the colours are in the frame.
-void finishRow(const VisibilityBuffer& buffer, const View& view, const DrawOptions& options, std::size_t y,
-               const std::uint32_t* colours, const std::uint32_t* ids, Picture& frame) {
+/// Fills row y of the picture. With `indexed`, each pixel of the buffer holds the index of the pixel whose colour and
+/// id it takes from the scratch memory (see pointAtPixels()); else it holds its own id, and its colour is already
+/// there.
+void finishRow(const DrawnScene& drawn, const VisibilityBuffer& buffer, std::size_t y, bool indexed, Picture& picture) {
   const auto width = static_cast<std::size_t>(buffer.width);
   const std::uint32_t background =
-      backgroundColour(options, view.tile.top + static_cast<int>(y), wholePicture(view).height);
+      backgroundColour(drawn.options, drawn.view.tile.top + static_cast<int>(y), wholePicture(drawn.view).height);
   for (std::size_t i = y * width; i < (y + 1) * width; ++i) {
     const std::uint32_t from = pixelId(buffer.pixels[i]);
-    frame.depth[i] = pixelDepth(buffer.pixels[i]);
+    picture.depth[i] = pixelDepth(buffer.pixels[i]);
     if (from == Picture::kNoPoint) {
-      frame.pointId[i] = from;
-      frame.colour[i] = background;
+      picture.pointId[i] = from;
+      picture.colour[i] = background;
     } else {
-      frame.pointId[i] = ids == nullptr ? from : ids[from];
-      if (ids != nullptr) frame.colour[i] = colours[from];
+      picture.pointId[i] = indexed ? buffer.scratch.ids[from] : from;
+      if (indexed) picture.colour[i] = buffer.scratch.colours[from];
     }
   }
 }
 
 /// After floodFill(): the frame takes from the buffer, whose points are as large as asked for by now, what fills a
 /// pixel that is empty or farther away than kBlendDepth.
-void takeLargePoints(const VisibilityBuffer& buffer, const ThreadPool& pool, Picture& frame) {
+void takeLargePoints(const VisibilityBuffer& buffer, const ThreadPool& pool, Picture& picture) {
   pool.parallelFor(buffer.pixels.size(), kRowsAtOnce * 1024, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
       const std::uint32_t from = pixelId(buffer.pixels[i]);
       const float depth = pixelDepth(buffer.pixels[i]);
       if (from == Picture::kNoPoint) continue;
-      if (frame.pointId[i] != Picture::kNoPoint && frame.depth[i] <= depth * DrawOptions::kBlendDepth) continue;
-      frame.depth[i] = depth;
-      frame.colour[i] = buffer.scratch.colours[from];
-      frame.pointId[i] = buffer.scratch.ids[from];
+      if (picture.pointId[i] != Picture::kNoPoint && picture.depth[i] <= depth * DrawOptions::kBlendDepth) continue;
+      picture.depth[i] = depth;
+      picture.colour[i] = buffer.scratch.colours[from];
+      picture.pointId[i] = buffer.scratch.ids[from];
     }
   });
 }
 
 }  // namespace
 
-void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
-                  const ThreadPool& pool, Picture& frame, GlFlood* flood) {
+void resolvePicture(const DrawnScene& drawn, const ResolveTools& tools, VisibilityBuffer& buffer, Picture& picture) {
+  const auto& [list, view, options] = drawn;
+  const ThreadPool& pool = tools.pool;
   const std::size_t count = buffer.pixels.size();
   const auto width = static_cast<std::size_t>(buffer.width);
   const auto height = static_cast<std::size_t>(std::max(buffer.height, 0));
-  frame.width = buffer.width;
-  frame.height = buffer.height;
-  frame.colour.resize(count);
-  frame.depth.resize(count);
-  frame.pointId.resize(count);
+  picture.width = buffer.width;
+  picture.height = buffer.height;
+  picture.colour.resize(count);
+  picture.depth.resize(count);
+  picture.pointId.resize(count);
   const Colouring colouring(list, view, options, buffer);
   const PointSizes sizes = options.colour == ColourMode::overdraw ? PointSizes(1) : PointSizes(options, view);
   const FillSizes fills(options, view);
   if (sizes.alwaysOne() && fills.none()) {
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
       for (std::size_t y = first; y < end; ++y) {
-        colouring.colour(y * width, (y + 1) * width, frame.colour.data() + y * width);
-        finishRow(buffer, view, options, y, nullptr, nullptr, frame);
+        colouring.colour(y * width, (y + 1) * width, picture.colour.data() + y * width);
+        finishRow(drawn, buffer, y, false, picture);
       }
     });
   } else {
@@ -187,19 +188,18 @@ void resolveFrame(const RenderList& list, const View& view, const DrawOptions& o
     if (!options.jumpFlood) dilate(buffer, sizes, pool);
     fillHoles(buffer, fills, pool);
     pool.parallelFor(height, kRowsAtOnce, [&](std::size_t first, std::size_t end) {
-      for (std::size_t y = first; y < end; ++y)
-        finishRow(buffer, view, options, y, buffer.scratch.colours.data(), buffer.scratch.ids.data(), frame);
+      for (std::size_t y = first; y < end; ++y) finishRow(drawn, buffer, y, true, picture);
     });
   }
   if (options.jumpFlood) {
-    if (flood != nullptr)
-      flood->fill(list, view, {}, pool, frame);
+    if (tools.flood != nullptr)
+      tools.flood->fill(list, view, {}, pool, picture);
     else
-      floodFill(list, view, {}, pool, frame);
+      floodFill(list, view, {}, pool, picture);
     dilate(buffer, sizes, pool);
-    if (!sizes.alwaysOne()) takeLargePoints(buffer, pool, frame);
+    if (!sizes.alwaysOne()) takeLargePoints(buffer, pool, picture);
   }
-  if (options.edl) eyeDomeLighting(frame, options.edlStrength, sizes, buffer.scratch.depths, pool);
+  if (options.edl) eyeDomeLighting(picture, options.edlStrength, sizes, buffer.scratch.depths, pool);
 }
 
 }  // namespace strata

@@ -9,9 +9,21 @@ namespace strata {
 
 class GlFlood;
 
-/// The second half of every draw: point size, ids to colours, eye-dome lighting. `buffer` is used up; its ids must be
-/// those of `list`. `flood` fills holes where DrawOptions::jumpFlood asks for it; without, the CPU does.
-void resolveFrame(const RenderList& list, const View& view, const DrawOptions& options, VisibilityBuffer& buffer,
-                  const ThreadPool& pool, Picture& frame, GlFlood* flood = nullptr);
+/// What was drawn: a list, as a view sees it, in the way that the options say.
+struct DrawnScene {
+  const RenderList& list;
+  const View& view;
+  const DrawOptions& options;
+};
+
+/// What resolving works with besides the picture's own memory.
+struct ResolveTools {
+  const ThreadPool& pool;
+  GlFlood* flood = nullptr;  ///< fills holes where DrawOptions::jumpFlood asks for it; null: the CPU fills them
+};
+
+/// The second half of every draw: makes points as large as asked, turns ids into colours, fills holes and lights the
+/// picture. `buffer` is used up; its ids must be those of the list. `picture` is resized to the buffer.
+void resolvePicture(const DrawnScene& drawn, const ResolveTools& tools, VisibilityBuffer& buffer, Picture& picture);
 
 }  // namespace strata

@@ -48,11 +48,11 @@ bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
   const double depth = glm::dot(c.projection.rowDepth, centre);
   if (depth - radius <= c.view.nearPlane) return true;
   const double w = glm::dot(c.projection.rowW, centre);
-  const glm::dvec2 place(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
+  const glm::dvec2 pixel(glm::dot(c.projection.rowX, centre) / w, glm::dot(c.projection.rowY, centre) / w);
   const View whole = wholePicture(c.view);
   const glm::dvec2 at =
       glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.tile.left, c.view.tile.top);
-  const double away = glm::distance(place, at) / std::max(whole.height, 1);
+  const double away = glm::distance(pixel, at) / std::max(whole.height, 1);
   const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
   const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;
   const glm::dvec3 size = hi - lo;
@@ -143,14 +143,14 @@ void planBatches(const RenderList& list, const View& view, const DrawOptions& op
       const glm::dvec3 lo = boxMinFromEye(plan.constants, *node, batch), hi = lo + batch.boxSize;
       planned.precision = batchPrecision(plan.constants, *node, batch);
       const Side clipSide = clip.side(lo, hi);
-      std::optional<GridPlace> place;
+      std::optional<GridMapping> mapping;
       if (kept && clipSide != Side::outside && boxInFrustum(plan.constants.planes, lo, hi))
-        place = finder.place(*node, batch, planned.precision);
-      if (!place) {
+        mapping = finder.map(*node, batch, planned.precision);
+      if (!mapping) {
         ++plan.batchesCulled;
         continue;
       }
-      planned.place = *place;
+      planned.mapping = *mapping;
       planned.clipped = clipSide == Side::partly;
       planned.inside = sideOf(sure, lo, hi) == Side::inside;
       planned.node = node;

@@ -33,7 +33,7 @@ struct PlannedBatch {
   Precision precision = Precision::low10;
   bool clipped = false;  ///< part of it may be outside DrawOptions::clip: its points are to be tested
   bool inside = false;   ///< every point is in the image, whatever rounding does: nothing to be tested
-  GridPlace place;
+  GridMapping mapping;
 };
 
 struct DrawPlan {

@@ -6,11 +6,9 @@
 namespace strata {
 namespace {
 
-constexpr double kLargestFloat = 1e30;      ///< beyond it products of floats may overflow
-constexpr double kOffGrid = 1e-4;           ///< steps that a corner may be off and still be on the grid: doubles round
-constexpr double kLargestSteps = 1.0e15;    ///< that a double counts exactly, with room
-constexpr double kLargestOffset = 2.147e9;  ///< steps; a little below 2^31
-constexpr std::size_t kMostGrids = 64;      ///< stores in one list; what comes after them has grids of its own
+constexpr double kLargestFloat = 1e30;    ///< beyond it products of floats may overflow
+constexpr double kLargestSteps = 1.0e15;  ///< that a double counts exactly, with room
+constexpr std::size_t kMostGrids = 64;    ///< stores in one list; what comes after them has grids of its own
 
 bool usable(const glm::vec4& row) {
   for (int i = 0; i < 4; ++i)
@@ -68,28 +66,28 @@ std::optional<GridFinder::OnGrid> GridFinder::gridOf(const glm::dvec3& step, con
   return OnGrid{grid->index, glm::round((corner - grid->point) / grid->step) - grid->eyeCell};
 }
 
-std::optional<GridPlace> GridFinder::place(const NodeData& node, const Batch& batch, Precision precision) {
+std::optional<GridMapping> GridFinder::map(const NodeData& node, const Batch& batch, Precision precision) {
   const glm::dvec3 steps = glm::exp2(glm::dvec3(batch.bits));
   const glm::dvec3 corner = node.origin + batch.boxMin;
   const std::optional<OnGrid> grid = gridOf(batch.boxSize / steps, corner);
-  if (!grid) return placeAlone(node, batch, precision);
+  if (!grid) return mapAlone(node, batch, precision);
   const glm::dvec3& first = grid->first;
-  GridPlace place;
-  place.grid = grid->index;
+  GridMapping mapping;
+  mapping.grid = grid->index;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(std::abs(first[axis]) + steps[axis] < kLargestOffset)) return placeAlone(node, batch, precision);
-    place.shift[axis] = batch.bits[axis] - 10 * static_cast<int>(precision);
-    const int half = place.shift[axis] > 0 ? 1 << (place.shift[axis] - 1) : 0;
-    place.offset[axis] = static_cast<int>(first[axis]) + half;
+    if (!(std::abs(first[axis]) + steps[axis] < kLargestOffset)) return mapAlone(node, batch, precision);
+    mapping.shift[axis] = batch.bits[axis] - 10 * static_cast<int>(precision);
+    const int half = mapping.shift[axis] > 0 ? 1 << (mapping.shift[axis] - 1) : 0;
+    mapping.offset[axis] = static_cast<int>(first[axis]) + half;
   }
-  return place;
+  return mapping;
 }
 
-std::optional<GridPlace> GridFinder::placeAlone(const NodeData& node, const Batch& batch, Precision precision) {
+std::optional<GridMapping> GridFinder::mapAlone(const NodeData& node, const Batch& batch, Precision precision) {
   const int bits = 10 * static_cast<int>(precision);
   const double cells = static_cast<double>(1u << bits);
   const glm::dvec3 lo = (node.origin - constants_.view.eye) + batch.boxMin;
-  GridPlace place;
+  GridMapping mapping;
   glm::dvec3 cell, rest;
   for (int axis = 0; axis < 3; ++axis) {
     cell[axis] = batch.boxSize[axis] / cells;
@@ -99,12 +97,12 @@ std::optional<GridPlace> GridFinder::placeAlone(const NodeData& node, const Batc
     eyeCell = std::clamp(eyeCell, -0.9 * cells, 1.9 * cells);
     if (!std::isfinite(eyeCell)) return std::nullopt;
     eyeCell = std::round(eyeCell);  // X - E then fits 32 bits
-    place.offset[axis] = -static_cast<int>(eyeCell);
+    mapping.offset[axis] = -static_cast<int>(eyeCell);
     rest[axis] = first + eyeCell * cell[axis];
   }
   if (!addTransform(cell, rest)) return std::nullopt;
-  place.grid = static_cast<std::uint32_t>(grids_.size() - 1);
-  return place;
+  mapping.grid = static_cast<std::uint32_t>(grids_.size() - 1);
+  return mapping;
 }
 
 }  // namespace strata

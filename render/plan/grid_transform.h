@@ -44,7 +44,7 @@ struct GridTransform {
 };
 
 /// How a batch's coordinates become steps of its grid: D = (X << shift) + offset, or X >> -shift.
-struct GridPlace {
+struct GridMapping {
   std::uint32_t grid = 0;  ///< index into DrawPlan::grids
   glm::ivec3 offset{0};
   glm::ivec3 shift{0};
@@ -54,6 +54,10 @@ struct GridPlace {
 /// batches whose corners are whole steps apart share it.
 class GridFinder {
  public:
+  static constexpr double kLargestOffset = 2.147e9;  ///< steps; a little below 2^31
+  /// How many steps a corner may be off the grid and still count as a point of it, because doubles round.
+  static constexpr double kOffGrid = 1e-4;
+
   GridFinder(const ViewConstants& constants, const Clip& clip, std::vector<GridTransform>& grids)
       : constants_(constants), clip_(clip), grids_(grids) {}
 
@@ -64,7 +68,7 @@ class GridFinder {
   };
   std::optional<OnGrid> gridOf(const glm::dvec3& step, const glm::dvec3& corner);
   /// Places a batch on the grid of its store, or on one of its own. Nothing where floats cannot hold its transform.
-  std::optional<GridPlace> place(const NodeData& node, const Batch& batch, Precision precision);
+  std::optional<GridMapping> map(const NodeData& node, const Batch& batch, Precision precision);
 
  private:
   struct Grid {
@@ -75,7 +79,7 @@ class GridFinder {
   };
 
   const Grid* find(const glm::dvec3& step, const glm::dvec3& corner);
-  std::optional<GridPlace> placeAlone(const NodeData& node, const Batch& batch, Precision precision);
+  std::optional<GridMapping> mapAlone(const NodeData& node, const Batch& batch, Precision precision);
   /// `rest`: the origin of d from the eye, metres. False where floats cannot hold the rows.
   bool addTransform(const glm::dvec3& step, const glm::dvec3& rest);
 

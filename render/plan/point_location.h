@@ -8,7 +8,7 @@
 namespace strata {
 
 /// Where a point lies.
-struct PointPlace {
+struct PointLocation {
   const NodeData* node = nullptr;
   std::uint32_t index = 0;
   std::size_t item = 0;  ///< of the list
@@ -30,7 +30,7 @@ class PointFinder {
     if (!list.items.empty()) itemAt_.push_back(static_cast<std::uint32_t>(list.items.size() - 1));
   }
 
-  PointPlace find(std::uint32_t id) const {
+  PointLocation find(std::uint32_t id) const {
     const std::uint32_t block = id / kBlock;
     std::size_t item = itemAt_[block];
     if (const std::size_t last = itemAt_[block + 1]; last > item + kFewItems)

@@ -1,9 +1,9 @@
 #include "render/progressive/point_pool.h"
 
 #include <algorithm>
-#include <span>
 
 #include "core/error.h"
+#include "core/fingerprint.h"
 #include "core/log.h"
 #include "render/progressive/shuffle.h"
 
@@ -15,20 +15,13 @@ constexpr std::uint32_t kSlack = 32;          ///< this part of a pool that is t
 constexpr std::uint32_t kCached = 4;          ///< what is shown and this part of it is kept close together
 constexpr std::uint32_t kPrintEvery = 16;     ///< point whose first word the fingerprint takes in
 
-std::uint64_t largestBlock(const GlFunctions& gl) {
-  long long bytes = 0;
-  gl.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
-  return static_cast<std::uint64_t>(std::max(bytes, 0LL));
-}
-
 /// How many of `wanted` points there is room for.
-std::uint32_t roomFor(const GlFunctions& gl, std::uint64_t wanted, Shuffle shuffle) {
-  const std::uint64_t block = std::min(largestBlock(gl), std::uint64_t{1} << 33);
-  std::uint64_t room = std::min({wanted, STRATA_POOL_PAGES * (block / sizeof(glm::uvec4)), block / 4});
+std::uint32_t roomFor(const GlFunctions& gl, std::uint64_t wanted) {
+  const std::uint64_t block = std::min(largestStorageBlock(gl), std::uint64_t{1} << 33);
+  const std::uint64_t room = std::min({wanted, STRATA_POOL_PAGES * (block / sizeof(glm::uvec4)), block / 4});
   if (room < wanted)
     logWarning("OpenGL: the point pool holds " + std::to_string(room) + " points, not " + std::to_string(wanted) +
                ": the driver's storage blocks are no larger");
-  if (shuffle == Shuffle::perfect) room -= room % 2;
   return static_cast<std::uint32_t>(room);
 }
 
@@ -48,20 +41,16 @@ std::size_t batchIndex(const NodeData& node, std::uint32_t firstPoint) {
   return static_cast<std::size_t>(after - node.batches.begin()) - 1;
 }
 
-/// By index: the place, in the same band.
-std::vector<std::uint32_t> permutation(const std::vector<PoolTurn::Band>& bands, Shuffle shuffle, std::uint32_t key,
+/// For each index of the pool its place, which lies in the same band.
+std::vector<std::uint32_t> permutation(const std::vector<PoolSchedule::Band>& bands, std::uint32_t key,
                                        const ThreadPool& threads) {
   std::vector<std::uint32_t> places(bands.back().end);
-  for (const PoolTurn::Band& band : bands) {
+  for (const PoolSchedule::Band& band : bands) {
     const std::uint32_t size = band.end - band.first;
-    const KeyedShuffle keyed(size, key++);
-    const int iterations = perfectShuffles(size);
+    const KeyedShuffle shuffled(size, key++);
     threads.parallelFor(size, 1u << 16, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) {
-        const auto index = static_cast<std::uint32_t>(i);
-        places[band.first + i] =
-            band.first + (shuffle == Shuffle::keyed ? keyed(index) : perfectShuffle(index, size, iterations));
-      }
+      for (std::size_t i = first; i < end; ++i)
+        places[band.first + i] = band.first + shuffled(static_cast<std::uint32_t>(i));
     });
   }
   return places;
@@ -69,12 +58,12 @@ std::vector<std::uint32_t> permutation(const std::vector<PoolTurn::Band>& bands,
 
 }  // namespace
 
-PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle shuffle, std::uint32_t key,
-                     std::uint32_t groupSize, const ThreadPool& threads)
+PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, std::uint32_t key, std::uint32_t groupSize,
+                     const ThreadPool& threads)
     : gl_(functions),
       groupSize_(groupSize),
-      manager_(roomFor(functions, points, shuffle)),
-      turn_(size(), shuffle == Shuffle::keyed ? PoolTurn::kBands : 1),
+      manager_(roomFor(functions, points)),
+      schedule_(size()),
       insert_(functions, poolStages("pool_insert.comp", groupSize)),
       fetch_(functions, poolStages("pool_fetch.comp", groupSize)),
       permutation_(functions, std::uint64_t{size()} * 4, gl::kStaticDraw),
@@ -82,13 +71,14 @@ PointPool::PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle
       insertBuffer_(functions, 0, gl::kStreamDraw),
       pieceBuffer_(functions, sizeof(shader::PoolPiece), gl::kStreamDraw) {
   if (size() == 0) throw Error("OpenGL", "a point pool needs room for a point, found none");
-  pagePoints_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(size(), largestBlock(gl_) / sizeof(glm::uvec4)));
+  pagePoints_ =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(size(), largestStorageBlock(gl_) / sizeof(glm::uvec4)));
   for (std::uint32_t first = 0; first < size(); first += pagePoints_) {
     const std::uint64_t room = std::min(pagePoints_, size() - first);
     pages_.push_back(std::make_unique<GlBuffer>(gl_, room * sizeof(glm::uvec4), gl::kDynamicCopy));
     pages_.back()->fill(STRATA_NO_POINT);
   }
-  const std::vector<std::uint32_t> places = permutation(turn_.bands(), shuffle, key, threads);
+  const std::vector<std::uint32_t> places = permutation(schedule_.bands(), key, threads);
   permutation_.write(0, places.data(), places.size() * 4);
   if (gl_.GetError() != 0)
     throw Error("OpenGL", "no memory for a point pool of " + std::to_string(size()) + " points, " +
@@ -99,26 +89,23 @@ std::uint64_t PointPool::gpuBytes() const {
   return std::uint64_t{size()} * (sizeof(glm::uvec4) + 4) + staging_.bytes() + pieceBuffer_.bytes();
 }
 
-/// Of what a node's points are: the same for a node that left the host's memory and came back, or has more planes now.
+/// Identifies a node by its points: the fingerprint stays the same when the node leaves the host's memory and comes
+/// back, and when more of its planes are loaded.
 std::uint64_t PointPool::fingerprint(const std::shared_ptr<const NodeData>& node) {
   const auto found = known_.find(node.get());
-  if (found != known_.end() && !found->second.node.expired()) return found->second.print;
-  std::uint64_t print = 0xcbf29ce484222325u;
-  const auto mix = [&print](const auto& value) {
-    for (const std::byte byte : std::as_bytes(std::span(&value, 1)))
-      print = (print ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
-  };
-  mix(node->key.code);
-  mix(node->origin);
-  mix(node->pointCount());
+  if (found != known_.end() && !found->second.node.expired()) return found->second.fingerprint;
+  Fingerprint print;
+  print.add(node->key.code);
+  print.add(node->origin);
+  print.add(node->pointCount());
   for (const Batch& batch : node->batches) {
-    mix(batch.firstPoint);
-    mix(batch.boxMin);
-    mix(batch.bits);
+    print.add(batch.firstPoint);
+    print.add(batch.boxMin);
+    print.add(batch.bits);
   }
-  for (std::size_t i = 0; i < node->position[0].size(); i += kPrintEvery) mix(node->position[0][i]);
-  known_[node.get()] = {node, print};
-  return print;
+  for (std::size_t i = 0; i < node->position[0].size(); i += kPrintEvery) print.add(node->position[0][i]);
+  known_[node.get()] = {node, print.value()};
+  return print.value();
 }
 
 /// A node that a list names twice, or a copy of it, is another one.
@@ -143,11 +130,11 @@ PointPool::Node& PointPool::nodeOf(const std::shared_ptr<const NodeData>& data) 
 void PointPool::beginFrame() {
   ++frame_;
   manager_.beginFrame();
-  turn_.beginFrame(freeSlots_);
+  schedule_.beginFrame(freeSlots_);
   std::erase_if(known_, [](const auto& entry) { return entry.second.node.expired(); });
   std::erase_if(nodes_, [](const auto& entry) { return entry.second.held == 0; });
   pieces_.assign(std::max<std::size_t>(slots_.size(), 1), {});
-  for (const auto& [slot, bands] : turn_.ghosts()) pieces_[slot].flags = STRATA_PIECE_DEAD;
+  for (const auto& [slot, bands] : schedule_.ghosts()) pieces_[slot].flags = STRATA_PIECE_DEAD;
   staged_.clear();
   inserts_.clear();
   wanted_.clear();
@@ -173,7 +160,7 @@ std::size_t PointPool::fitting() {
   std::uint64_t points = 0;
   for (const Wanted& wanted : wanted_) points += wanted.points;
   if (points <= size()) return wanted_.size();
-  std::stable_sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) { return a.part < b.part; });
+  std::stable_sort(wanted_.begin(), wanted_.end(), [](const Wanted& a, const Wanted& b) { return a.share < b.share; });
   std::uint64_t left = size() - size() / kSlack;
   const auto end = std::find_if(wanted_.begin(), wanted_.end(), [&left](const Wanted& wanted) {
     if (wanted.points > left) return true;
@@ -187,7 +174,7 @@ std::size_t PointPool::fitting() {
 void PointPool::limitTo(std::size_t fits) {
   std::uint64_t points = 0;
   for (std::size_t w = 0; w < fits; ++w) points += wanted_[w].points;
-  const std::uint64_t band = turn_.bandPlaces(), bands = (points + points / kCached + band - 1) / band;
+  const std::uint64_t band = schedule_.bandPlaces(), bands = (points + points / kCached + band - 1) / band;
   manager_.setLimit(static_cast<std::uint32_t>(std::min<std::uint64_t>(bands * band, size())));
 }
 
@@ -198,9 +185,9 @@ bool PointPool::isOld(const Wanted& wanted, bool classes) const {
          (classes && !slot.classes && !wanted.batch->node->classification.empty());
 }
 
-PoolFrame PointPool::show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints) {
+PoolUpdate PointPool::show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints) {
   beginFrame();
-  PoolFrame result;
+  PoolUpdate result;
   std::vector<bool> incomplete(list.items.size());
   findWanted(list, plan);
   const std::size_t fits = fitting();
@@ -219,7 +206,8 @@ PoolFrame PointPool::show(const RenderList& list, const DrawPlan& plan, bool cla
     }
   }
   limitTo(fits);
-  std::stable_sort(missing.begin(), missing.end(), [](const Wanted* a, const Wanted* b) { return a->part < b->part; });
+  std::stable_sort(missing.begin(), missing.end(),
+                   [](const Wanted* a, const Wanted* b) { return a->share < b->share; });
   bool full = false;
   for (const Wanted* piece : missing) {
     const bool within = staged_.empty() || staged_.size() + piece->points <= mostPoints;
@@ -262,7 +250,7 @@ bool PointPool::makeRoom(const Wanted& missing) {
 
 void PointPool::free(std::uint32_t slot) {
   const PoolBlock& block = *slots_[slot].block;
-  turn_.freed(slot, block.first, block.size);
+  schedule_.freed(slot, block.first, block.size);
   Node& node = *slots_[slot].node;
   node.slots[slots_[slot].piece] = kNoSlot;
   --node.held;
@@ -293,16 +281,16 @@ void PointPool::setPiece(std::uint32_t slot, const PlannedBatch& batch, std::uin
   piece.count = std::min(kPiecePoints, batch.pointCount - first);
   piece.first = slots_[slot].block->first;
   piece.flags = static_cast<std::uint32_t>(planes) | (batch.clipped ? STRATA_PIECE_CLIPPED : 0u) |
-                (slots_[slot].classes ? STRATA_PIECE_CLASSES : 0u) | batch.place.grid << STRATA_PIECE_GRID;
+                (slots_[slot].classes ? STRATA_PIECE_CLASSES : 0u) | batch.mapping.grid << STRATA_PIECE_GRID;
   const auto half = [](int shift) { return shift > 0 ? 1 << (shift - 1) : 0; };
   piece.shifts = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const int shift = batch.place.shift[axis] + 10 * (wanted - planes);
-    piece.offset[axis] = batch.place.offset[axis] - half(batch.place.shift[axis]) + half(shift);
+    const int shift = batch.mapping.shift[axis] + 10 * (wanted - planes);
+    piece.offset[axis] = batch.mapping.offset[axis] - half(batch.mapping.shift[axis]) + half(shift);
     piece.shifts |= static_cast<std::uint32_t>(shift + 128) << (8 * axis);
   }
   piece.offset.w = static_cast<int>(batch.firstId + first);
-  turn_.shown(piece.first, slots_[slot].block->size);
+  schedule_.shown(piece.first, slots_[slot].block->size);
 }
 
 void PointPool::bindPool() {

@@ -15,13 +15,8 @@
 
 namespace strata {
 
-enum class Shuffle : std::uint8_t {
-  keyed,   ///< KeyedShuffle, within each band of the pool: any size, no pattern
-  perfect  ///< perfectShuffle(): Rumpler's, of the whole pool; an odd size loses a point
-};
-
 /// What one frame wants of the pool and what came of it.
-struct PoolFrame {
+struct PoolUpdate {
   std::uint32_t nodesMissing = 0;  ///< nodes of the list of which something is seen that is not in the pool
   std::uint64_t pointsWritten = 0;
   bool rewritten = false;  ///< pieces that pixels may show have been written again
@@ -38,22 +33,22 @@ class PointPool {
 
   /// Room for as many of `points` as the driver's storage blocks hold, four pages at most; a warning where that is
   /// less. Throws Error where there is no memory or a shader does not compile.
-  PointPool(const GlFunctions& functions, std::uint64_t points, Shuffle shuffle, std::uint32_t key,
-            std::uint32_t groupSize, const ThreadPool& threads);
+  PointPool(const GlFunctions& functions, std::uint64_t points, std::uint32_t key, std::uint32_t groupSize,
+            const ThreadPool& threads);
 
   /// Takes what `plan` of `list` shows into the pool, at most `mostPoints` now (a first piece always passes), the first
   /// parts of all nodes before later ones. Where the view shows more than the pool holds, the last parts of all nodes
   /// stay out, as large a share of each: they give way to the first part of a node that comes into view, and are drawn
   /// as long as nothing does. `classes`: they are needed.
-  PoolFrame show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints);
+  PoolUpdate show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints);
   /// Which places the fill pass meets next; of pages, see below.
-  PoolTurn& turn() { return turn_; }
-  const PoolTurn& turn() const { return turn_; }
+  PoolSchedule& schedule() { return schedule_; }
+  const PoolSchedule& schedule() const { return schedule_; }
 
   std::uint32_t size() const { return manager_.size(); }
   std::uint32_t pagePoints() const { return pagePoints_; }
   const PoolManager& manager() const { return manager_; }
-  std::uint32_t ghostPieces() const { return static_cast<std::uint32_t>(turn_.ghosts().size()); }
+  std::uint32_t ghostPieces() const { return static_cast<std::uint32_t>(schedule_.ghosts().size()); }
   std::uint64_t gpuBytes() const;
 
   void bindPage(std::uint32_t page, unsigned binding) const { pages_[page]->bindStorage(binding); }
@@ -79,7 +74,7 @@ class PointPool {
   };
   struct Known {
     std::weak_ptr<const NodeData> node;
-    std::uint64_t print;
+    std::uint64_t fingerprint;
   };
   struct Wanted {
     Node* node;
@@ -87,7 +82,7 @@ class PointPool {
     std::uint32_t piece;
     std::uint32_t first;   ///< within the batch
     std::uint32_t points;  ///< of the whole piece
-    float part;            ///< of what is seen of the node, that comes before it
+    float share;           ///< of what is seen of the node, that comes before it
   };
 
   void beginFrame();
@@ -108,7 +103,7 @@ class PointPool {
   const std::uint32_t groupSize_;
   std::uint32_t pagePoints_ = 0;
   PoolManager manager_;
-  PoolTurn turn_;
+  PoolSchedule schedule_;
   GlProgram insert_, fetch_;
   std::vector<std::unique_ptr<GlBuffer>> pages_;
   GlBuffer permutation_, staging_, insertBuffer_, pieceBuffer_;

@@ -10,7 +10,7 @@ namespace strata {
 /// the view shows of it. Here the pool lies in bands, and only those are gone over of which the frame shows a point or
 /// that hold ghosts (points of freed blocks), all of them in equal shares: a turn is as long as they are together.
 /// Each place of them is met once a turn.
-class PoolTurn {
+class PoolSchedule {
  public:
   struct Band {
     std::uint32_t first = 0, end = 0;  ///< places, and indices: a permutation stays within its band
@@ -19,7 +19,7 @@ class PoolTurn {
   static constexpr std::uint32_t kLeastBand = 4096;  ///< places
 
   /// One band alone for `bands` 1.
-  explicit PoolTurn(std::uint32_t size, std::uint32_t bands = kBands);
+  explicit PoolSchedule(std::uint32_t size, std::uint32_t bands = kBands);
 
   std::vector<Band> bands() const;
   std::uint32_t bandPlaces() const { return bandPlaces_; }  ///< of each but the last
@@ -45,20 +45,20 @@ class PoolTurn {
     std::uint32_t slot;
     std::uint64_t until;  ///< of Round::turned
   };
-  struct Round {
-    Band band;
+  struct BandState {
+    Band range;
     std::uint32_t cursor = 0;   ///< place at which the next frame goes on
     std::uint32_t pending = 0;  ///< places
     std::uint64_t turned = 0;   ///< places gone over, ever
     bool shown = false;
     std::deque<Ghost> ghosts;  ///< ascending by until
 
-    std::uint32_t size() const { return band.end - band.first; }
+    std::uint32_t size() const { return range.end - range.first; }
     bool counts() const { return shown || !ghosts.empty(); }
   };
 
   std::uint32_t bandPlaces_;
-  std::vector<Round> rounds_;
+  std::vector<BandState> bands_;
   std::unordered_map<std::uint32_t, std::uint32_t> ghosts_;
 };
 

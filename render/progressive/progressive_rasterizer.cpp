@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <span>
 
 #include "core/error.h"
+#include "core/fingerprint.h"
 #include "core/log.h"
 #include "render/flood/gl_flood.h"
-#include "render/gpu/gl_scene.h"
+#include "render/gl/gl_device.h"
+#include "render/gpu/shader_records.h"
 #include "render/picture/resolve.h"
 #include "render/stopwatch.h"
 
@@ -18,42 +19,33 @@ namespace {
 enum Pass : std::size_t { kDepth = 0, kIndex = 1, kKeep = 2, kPasses = 3 };  // STRATA_PASS of progressive.comp
 constexpr std::uint32_t kPointsOfThread = 32;                                // likewise
 
-std::unique_ptr<GlContext> currentOrThrow(std::unique_ptr<GlContext> context) {
-  if (context == nullptr) throw Error("OpenGL", "progressive drawing needs a context, found none");
-  context->makeCurrent();
-  return context;
-}
-
-/// FNV-1a of all that the picture is made of. Two frames with one key show the same points in the same places.
+/// A fingerprint of everything that decides a picture: two frames with the same key show the same points in the same
+/// pixels.
 std::uint64_t pictureKey(const View& view, const DrawOptions& options, const DrawPlan& plan) {
-  std::uint64_t key = 0xcbf29ce484222325u;
-  const auto mix = [&key](const auto& value) {
-    for (const std::byte byte : std::as_bytes(std::span(&value, 1)))
-      key = (key ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3u;
-  };
-  mix(view.width);
-  mix(view.height);
-  mix(view.tile);
-  mix(view.nearPlane);
-  mix(view.orthographic);
+  Fingerprint key;
+  key.add(view.width);
+  key.add(view.height);
+  key.add(view.tile);
+  key.add(view.nearPlane);
+  key.add(view.orthographic);
   for (const GridTransform& grid : plan.grids) {
-    mix(grid.x);
-    mix(grid.y);
-    mix(grid.depth);
-    for (const ClipSteps& box : grid.clipBoxes) mix(box);
-    for (const ClipSteps& box : grid.clipCutouts) mix(box);
-    for (const glm::vec4& plane : grid.clipPlanes) mix(plane);
+    key.add(grid.x);
+    key.add(grid.y);
+    key.add(grid.depth);
+    for (const ClipSteps& box : grid.clipBoxes) key.add(box);
+    for (const ClipSteps& box : grid.clipCutouts) key.add(box);
+    for (const glm::vec4& plane : grid.clipPlanes) key.add(plane);
   }
   for (const PlannedBatch& batch : plan.batches) {
-    mix(batch.node);
-    mix(batch.firstPoint);
-    mix(batch.pointCount);
-    mix(batch.firstId);
-    mix(batch.precision);
-    mix(batch.place);
+    key.add(batch.node);
+    key.add(batch.firstPoint);
+    key.add(batch.pointCount);
+    key.add(batch.firstId);
+    key.add(batch.precision);
+    key.add(batch.mapping);
   }
-  for (std::size_t c = 0; c < options.classes.size(); ++c) mix(options.classes[c]);
-  return key;
+  for (std::size_t c = 0; c < options.classes.size(); ++c) key.add(options.classes[c]);
+  return key.value();
 }
 
 /// Points [first, end) of one page.
@@ -66,33 +58,29 @@ class Progressive final : public ProgressiveRasterizer {
   Progressive(std::unique_ptr<GlContext> context, const ProgressiveOptions& options, int threads)
       : options_(options),
         threads_(threads),
-        context_(currentOrThrow(std::move(context))),
-        gl_(loadGlFunctions(*context_)),
-        device_(glRenderer(gl_)),
-        software_(isSoftwareRenderer(device_)),
-        groupSize_(software_ ? 8 : 128),
+        device_(std::move(context)),
+        gl_(device_.gl()),
+        groupSize_(device_.groupSize()),
         passes_{programs(0, false), programs(1, false), programs(2, false),
                 programs(0, true),  programs(1, true),  programs(2, true)},
-        points_(gl_, options.poolPoints, options.shuffle, options.key, groupSize_, threads_),
+        points_(gl_, options.poolPoints, options.key, groupSize_, threads_),
         gridBuffer_(gl_, 0, gl::kStreamDraw),
         depths_(gl_, 0, gl::kDynamicCopy),
         ids_(gl_, 0, gl::kDynamicCopy),
         candidates_(gl_, 0, gl::kDynamicCopy),
         kept_{{{gl_, 0, gl::kDynamicCopy}, {gl_, 0, gl::kDynamicCopy}}},
         stamps_{GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_),
-                GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_)} {
+                GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_)},
+        mostPixels_(largestStorageBlock(gl_) / sizeof(glm::uvec4)) {
     passes_[kDepth].get({});  // now, so that a driver that cannot is found out when the rasterizer is made
-    long long bytes = 0;
-    gl_.GetInteger64v(gl::kMaxShaderStorageBlockSize, &bytes);
-    mostPixels_ = static_cast<std::uint64_t>(std::max(bytes, 0LL)) / sizeof(glm::uvec4);
     stats_.poolPoints = points_.size();
     stats_.poolFree = points_.size();
   }
 
-  ~Progressive() override { context_->makeCurrent(); }
+  ~Progressive() override { device_.makeCurrent(); }
 
   std::string_view name() const override { return "progressive"; }
-  std::string device() const override { return device_; }
+  std::string device() const override { return device_.renderer(); }
   const ProgressiveOptions& options() const override { return options_; }
   const ProgressiveStats& progress() const override { return stats_; }
   void setOptions(const ProgressiveOptions& options) override {
@@ -100,18 +88,18 @@ class Progressive final : public ProgressiveRasterizer {
     options_.uploadPerFrame = options.uploadPerFrame;
   }
 
-  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& frame) override {
+  DrawStats draw(const RenderList& list, const View& view, const DrawOptions& options, Picture& picture) override {
     Stopwatch watch;
-    context_->makeCurrent();
+    device_.makeCurrent();
     planBatches(list, view, options, plan_);
     DrawStats stats = planStats(plan_);
     stats.pointsDrawn = 0;
-    const PoolFrame shown = points_.show(list, plan_, !options.classes.all(), options_.uploadPerFrame);
+    const PoolUpdate shown = points_.show(list, plan_, !options.classes.all(), options_.uploadPerFrame);
     stats.nodesNotUploaded = shown.nodesMissing;
     stats.bytesUploaded = shown.pointsWritten * sizeof(glm::uvec4);
     stats.uploadMs = watch.lapMs();
     const std::uint64_t key = pictureKey(view, options, plan_);
-    if (key != key_ || shown.pointsWritten > 0) points_.turn().restart();
+    if (key != key_ || shown.pointsWritten > 0) points_.schedule().restart();
     key_ = key;
     beginPixels(view);
     try {
@@ -123,9 +111,9 @@ class Progressive final : public ProgressiveRasterizer {
     }
     gl_.UseProgram(0);
     stats.drawMs = watch.lapMs();
-    stats.pointsPending = pixels_ > 0 ? points_.turn().pending() : 0;
+    stats.pointsPending = pixels_ > 0 ? points_.schedule().pending() : 0;
     stats.gpuBytes = points_.gpuBytes() + 2 * kept_[0].bytes() + candidates_.bytes();
-    resolveFrame(list, view, options, buffer_, threads_, frame, &flood_);
+    resolvePicture({list, view, options}, {threads_, &flood_}, buffer_, picture);
     stats.resolveMs = watch.lapMs();
     report(stats, shown);
     return stats;
@@ -136,7 +124,7 @@ class Progressive final : public ProgressiveRasterizer {
   void forget() {
     kept_[source_].fill(STRATA_NO_POINT);
     covered_ = 0;
-    points_.turn().restart();
+    points_.schedule().restart();
   }
 
   void beginPixels(const View& view) {
@@ -163,7 +151,7 @@ class Progressive final : public ProgressiveRasterizer {
   std::vector<Range> nextRanges(std::uint64_t count) {
     std::vector<Range> ranges;
     const std::uint32_t pagePoints = points_.pagePoints();
-    for (const PoolTurn::Band& band : points_.turn().next(count))
+    for (const PoolSchedule::Band& band : points_.schedule().next(count))
       for (std::uint32_t first = band.first; first < band.end;) {
         const std::uint32_t page = first / pagePoints, start = page * pagePoints;
         const std::uint32_t end = band.end - start <= pagePoints ? band.end : start + pagePoints;
@@ -181,7 +169,7 @@ class Progressive final : public ProgressiveRasterizer {
   void drawOnGpu(const DrawOptions& options, bool rewritten, DrawStats& stats) {
     const ShaderVariant variant{1, !options.clip.empty(), !options.classes.all()};
     const auto pixels = static_cast<std::uint32_t>(pixels_);
-    stats_.filled = std::min(options_.pointsPerFrame, points_.turn().pending());
+    stats_.filled = std::min(options_.pointsPerFrame, points_.schedule().pending());
     const std::vector<Range> ranges = nextRanges(stats_.filled);
     std::uint64_t words = groupsFor(pixels);
     for (const Range& range : ranges) words += groupsFor(range.end - range.first);
@@ -255,24 +243,15 @@ class Progressive final : public ProgressiveRasterizer {
       const glm::vec4 rows[3] = {plan_.grids[0].x, plan_.grids[0].y, plan_.grids[0].depth};
       gl_.Uniform4fv(STRATA_UNIFORM_GRID, 3, &rows[0].x);
     }
-    const Viewport port = viewport(plan_.constants);
-    const glm::vec4 size(port.halfWidth, port.halfHeight, port.width, port.height);
-    const glm::vec4 lens(port.nearDepth, port.perspective ? 1.0f : 0.0f, port.left, port.top);
-    gl_.Uniform4fv(STRATA_UNIFORM_VIEWPORT, 1, &size.x);
-    gl_.Uniform4fv(STRATA_UNIFORM_LENS, 1, &lens.x);
-    const glm::ivec3 clips = clipCounts(options.clip);
-    gl_.Uniform3i(STRATA_UNIFORM_CLIPS, clips.x, clips.y, clips.z);
-    if (options.classes.all()) return;
-    std::uint32_t words[8] = {};
-    for (std::size_t c = 0; c < options.classes.size(); ++c)
-      words[c / 32] |= (options.classes[c] ? 1u : 0u) << (c % 32);
-    gl_.Uniform1uiv(STRATA_UNIFORM_CLASSES, 8, words);
+    setViewUniforms(gl_, {&plan_.constants, 1});
+    setClipUniforms(gl_, clipCounts(options.clip));
+    if (!options.classes.all()) setClassUniforms(gl_, options.classes);
   }
 
   void readPixels(DrawStats& stats) {
     Stopwatch watch;
     const auto between = [this](std::size_t from, std::size_t to) {
-      if (software_) return std::accumulate(&lapMs_[from + 1], &lapMs_[to] + 1, 0.0);
+      if (device_.isSoftware()) return std::accumulate(&lapMs_[from + 1], &lapMs_[to] + 1, 0.0);
       return static_cast<double>(stamps_[to].value() - stamps_[from].value()) * 1e-6;
     };
     stats.gpuMs = between(0, 5);
@@ -294,10 +273,10 @@ class Progressive final : public ProgressiveRasterizer {
     stats_.readMs = watch.lapMs();
   }
 
-  void report(const DrawStats& stats, const PoolFrame& shown) {
+  void report(const DrawStats& stats, const PoolUpdate& shown) {
     stats_.written = shown.pointsWritten;
     stats_.gpuBytes = stats.gpuBytes;
-    stats_.turnPlaces = points_.turn().places();
+    stats_.turnPlaces = points_.schedule().places();
     stats_.uploadMs = stats.uploadMs;
     stats_.resolveMs = stats.resolveMs;
     stats_.poolFree = points_.manager().freePoints();
@@ -317,10 +296,8 @@ class Progressive final : public ProgressiveRasterizer {
 
   ProgressiveOptions options_;
   ThreadPool threads_;
-  std::unique_ptr<GlContext> context_;
-  GlFunctions gl_;
-  std::string device_;
-  const bool software_;
+  const GlDevice device_;
+  const GlFunctions& gl_;
   const std::uint32_t groupSize_;
   std::array<ProgramCache, 2 * kPasses> passes_;  ///< for any grids, then for one
   PointPool points_;
@@ -328,6 +305,7 @@ class Progressive final : public ProgressiveRasterizer {
   GlBuffer gridBuffer_, depths_, ids_, candidates_;
   std::array<GlBuffer, 2> kept_;  ///< the points that the pixels show: of the last frame, of this one
   std::array<GlTimestamp, 6> stamps_;
+  const std::uint64_t mostPixels_;  ///< that a storage block holds
   Stopwatch lap_;
   std::array<double, 6> lapMs_{};  ///< from the stamp before
   std::size_t source_ = 0;         ///< which of kept_ is the last frame's
@@ -336,9 +314,8 @@ class Progressive final : public ProgressiveRasterizer {
   std::vector<std::uint32_t> hostDepths_, hostIds_;
   ProgressiveStats stats_;
   std::uint64_t key_ = 0;
-  std::uint64_t covered_ = 0;     ///< pixels of the last frame that have a point
-  std::uint64_t mostPixels_ = 0;  ///< that a storage block holds
-  std::size_t pixels_ = 0;        ///< of this frame; 0: nothing is drawn
+  std::uint64_t covered_ = 0;  ///< pixels of the last frame that have a point
+  std::size_t pixels_ = 0;     ///< of this frame; 0: nothing is drawn
   bool warned_ = false;
 };
 

@@ -11,8 +11,7 @@ struct ProgressiveOptions {
   std::uint64_t pointsPerFrame = 1'000'000;  ///< of the pool, drawn beside what is reprojected; Rumpler's n
   std::uint64_t uploadPerFrame = 500'000;    ///< points that may go into the pool
   std::uint64_t poolPoints = 12'000'000;     ///< as many as the driver has room for
-  Shuffle shuffle = Shuffle::keyed;
-  std::uint32_t key = 1;  ///< of the keyed shuffle
+  std::uint32_t key = 1;                     ///< of the shuffle
 };
 
 /// What the last frame did, for panels and measurements.

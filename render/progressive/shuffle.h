@@ -7,16 +7,6 @@ namespace strata {
 // Where the points of a pool lie: index i of [0, size) goes to place shuffled(i). Both ways are bijections, so that a
 // consecutive range of indices, which the memory manager hands out, owns places of its own all over the pool.
 
-/// `iterations` times the perfect shuffle (Rumpler 2019, eq. 3.2): i goes to size / 2 * (i mod 2) + i / 2. A bijection
-/// for an even size alone.
-constexpr std::uint32_t perfectShuffle(std::uint32_t i, std::uint32_t size, int iterations) {
-  for (int k = 0; k < iterations; ++k) i = (i & 1u) * (size / 2) + i / 2;
-  return i;
-}
-
-/// Half the logarithm of the size, rounded down: how often Rumpler 2019 (3.2) shuffles, before order comes back.
-constexpr int perfectShuffles(std::uint32_t size) { return size == 0 ? 0 : (std::bit_width(size) - 1) / 2; }
-
 /// A bijection for any size, another for each key: a Feistel network over the smallest power of two that holds the
 /// size, walked on until it falls inside (Black and Rogaway 2002, "Ciphers with Arbitrary Finite Domains"); less than
 /// two turns on average. Halves differ by a bit where the power is odd. No security is asked of it.

@@ -1,7 +1,7 @@
 // The arithmetic of batch_plan.h.
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer Page { uint page[]; };
 layout(std430, binding = STRATA_BINDING_RECORDS) readonly buffer Records { BatchRecord records[]; };
-layout(std430, binding = STRATA_BINDING_PLACES) readonly buffer Places { BatchPlace places[]; };
+layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) readonly buffer Places { BatchView places[]; };
 layout(std430, binding = STRATA_BINDING_GRIDS) readonly buffer Grids { GridRecord grids[]; };
 
 layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewports[STRATA_VIEWS];

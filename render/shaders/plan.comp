@@ -4,7 +4,7 @@ layout(local_size_x = STRATA_PLAN_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer Page { uint page[]; };
 layout(std430, binding = STRATA_BINDING_RECORDS) writeonly buffer Records { BatchRecord records[]; };
-layout(std430, binding = STRATA_BINDING_PLACES) writeonly buffer Places { BatchPlace places[]; };
+layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) writeonly buffer Places { BatchView places[]; };
 layout(std430, binding = STRATA_BINDING_PARTS) readonly buffer Parts { DrawPart parts[]; };
 layout(std430, binding = STRATA_BINDING_VIEWS) readonly buffer Views { ViewRecord views[]; };
 layout(std430, binding = STRATA_BINDING_RUNS) buffer Runs { DispatchRecord runs[]; };
@@ -53,8 +53,8 @@ int wantedPlanes(int view, dvec3 lo, dvec3 size) {
   return pixels < STRATA_PX_AT_10_BITS ? 1 : pixels < STRATA_PX_AT_20_BITS ? 2 : 3;
 }
 
-BatchPlace placeFor(int view, DrawPart part, uint box, dvec3 boxMin) {
-  BatchPlace place = BatchPlace(ivec4(0), ivec4(0));
+BatchView placeFor(int view, DrawPart part, uint box, dvec3 boxMin) {
+  BatchView place = BatchView(ivec4(0), ivec4(0));
   ivec4 first = part.first[view];
   if (first.w < 0) return place;
   ivec3 bits = ivec3(uvec3(page[box + 9u], page[box + 9u] >> 8, page[box + 9u] >> 16) & 255u);
@@ -88,7 +88,7 @@ void main() {
     uint firstPoint = page[box + 10u];
     if (firstPoint >= part.prefix) continue;
     dvec3 boxMin = dvec3(doubleAt(box), doubleAt(box + 2u), doubleAt(box + 4u));
-    BatchPlace seen[STRATA_VIEWS];
+    BatchView seen[STRATA_VIEWS];
     int sightings = 0;
     for (int view = 0; view < STRATA_VIEWS; ++view) {
       seen[view] = placeFor(view, part, box, boxMin);

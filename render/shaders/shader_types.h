@@ -18,14 +18,14 @@ using uvec4 = glm::uvec4;
 #define STRATA_MOST_CLIPS 4  // boxes and cutouts together, and as many planes
 
 // Storage blocks of drawing
-#define STRATA_BINDING_PAGE 0      // words of node data
-#define STRATA_BINDING_RECORDS 1   // BatchRecord
-#define STRATA_BINDING_PLACES 2    // BatchPlace, one a view for each record
-#define STRATA_BINDING_GRIDS 3     // GridRecord
-#define STRATA_BINDING_DEPTH 4     // per pixel: bits of the smallest depth; compute64: depth and id in 64 bits
-#define STRATA_BINDING_ID 5        // per pixel: the lowest id at that depth
-#define STRATA_BINDING_MORE 6      // compute32: candidates; compute_lock: locks; accumulate: sums or counts
-#define STRATA_BINDING_COUNTERS 7  // Counters
+#define STRATA_BINDING_PAGE 0         // words of node data
+#define STRATA_BINDING_RECORDS 1      // BatchRecord
+#define STRATA_BINDING_BATCH_VIEWS 2  // BatchView, one a view for each record
+#define STRATA_BINDING_GRIDS 3        // GridRecord
+#define STRATA_BINDING_DEPTH 4        // per pixel: bits of the smallest depth; compute64: depth and id in 64 bits
+#define STRATA_BINDING_ID 5           // per pixel: the lowest id at that depth
+#define STRATA_BINDING_MORE 6         // compute32: candidates; compute_lock: locks; accumulate: sums or counts
+#define STRATA_BINDING_COUNTERS 7     // Counters
 // Storage blocks of planning, beside page, records and places
 #define STRATA_BINDING_PARTS 3  // DrawPart
 #define STRATA_BINDING_VIEWS 4  // ViewRecord
@@ -72,7 +72,7 @@ using uvec4 = glm::uvec4;
 
 #define STRATA_ATTRIBUTE_RECORD 0
 
-#define STRATA_CLIPPED 1     // flag of BatchPlace: its points are to be tested
+#define STRATA_CLIPPED 1     // flag of BatchView: its points are to be tested
 #define STRATA_BOX_WORDS 16  // of BatchBox
 
 /// One batch to draw.
@@ -87,8 +87,8 @@ struct BatchRecord {
   uint padding;
 };
 
-/// How one view sees a batch: GridPlace of batch_plan.h.
-struct BatchPlace {
+/// How one view sees a batch: GridMapping of batch_plan.h.
+struct BatchView {
   ivec4 offset;  // w: planes to read, 1 to 3; 0: not seen
   ivec4 shift;   // to the left; to the right where negative. w: index of the grid * 2, + STRATA_CLIPPED
 };
@@ -117,8 +117,8 @@ struct GridRecord {
 
 /// Consecutive points of one batch in the pool, as the view sees them; by slot.
 struct PoolPiece {
-  ivec4 offset;  // of BatchPlace. w: id of the first point
-  uint shifts;   // of BatchPlace: an axis, a byte each, 128 more
+  ivec4 offset;  // of BatchView. w: id of the first point
+  uint shifts;   // of BatchView: an axis, a byte each, 128 more
   uint count;    // points that are drawn, the first ones
   uint flags;
   uint first;  // index of the first point, before shuffling
@@ -235,7 +235,7 @@ struct DispatchRecord {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchPlace) == 32 && sizeof(GridRecord) == 240);
+static_assert(sizeof(BatchRecord) == 32 && sizeof(BatchView) == 32 && sizeof(GridRecord) == 240);
 static_assert(sizeof(BatchBox) == 4 * STRATA_BOX_WORDS && sizeof(DrawPart) == 192 && sizeof(ViewRecord) == 640);
 static_assert(sizeof(PoolPiece) == 32 && sizeof(PoolInsert) == 16);
 static_assert(sizeof(FloodParams) == 80 && sizeof(FloodItem) == 8 && sizeof(FloodSeed) == 16 &&

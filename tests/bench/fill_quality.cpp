@@ -23,6 +23,7 @@
 #include "render/flood/gl_flood.h"
 #include "render/gl/gl_context.h"
 #include "render/stopwatch.h"
+#include "tests/support/faithful_flood.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/mean_picture.h"
 #include "tests/support/picture_quality.h"
@@ -91,9 +92,9 @@ std::vector<Way> waysOf(const Store& store) {
   for (const float share : {0.001f, 0.003f, 0.01f, 0.03f}) {
     std::ostringstream name;
     name << "paper " << share;
-    ways.push_back({name.str(), 1, true, faithfulFlood(scale, share)});
+    ways.push_back({name.str(), 1, true, test::faithfulFlood(scale, share)});
   }
-  FloodSettings settings = faithfulFlood(scale, 0.01f);
+  FloodSettings settings = test::faithfulFlood(scale, 0.01f);
   settings.keepFront = true;
   settings.reachMetres = 0.0f;
   settings.continuity = FloodSettings{}.continuity;
@@ -148,17 +149,17 @@ void pictures(const std::string& out, const Store& store, const std::vector<View
         const Way& way = ways[i];
         DrawOptions options;
         options.fill = way.window;
-        Picture frame;
-        rasterizer->draw(thin, views[v], options, frame);
-        if (way.flood) floodFill(thin, views[v], way.settings, pool, frame);
-        const FillJudgement judged = judgeFill(full, frame);
-        const PictureQuality quality = pictureQuality(reference, frame);
+        Picture picture;
+        rasterizer->draw(thin, views[v], options, picture);
+        if (way.flood) floodFill(thin, views[v], way.settings, pool, picture);
+        const FillJudgement judged = judgeFill(full, picture);
+        const PictureQuality quality = pictureQuality(reference, picture);
         std::ostringstream cell, name;
         cell << std::fixed << std::setprecision(2) << ' ' << 100.0 * judged.covered << " %, " << 100.0 * judged.wrong
              << " %, " << quality.psnr << " dB, " << std::setprecision(3) << quality.ssim << " |";
         rows[i] += cell.str();
         name << view << "_" << share << "_" << fileName(way.name) << ".png";
-        writePng(name.str(), {frame.width, frame.height, frame.colour});
+        writePng(name.str(), {picture.width, picture.height, picture.colour});
       }
     }
     std::cout << "\n|---|";
@@ -179,9 +180,9 @@ template <typename Fill>
 StepTimes timesOf(const Picture& drawn, Fill fill) {
   StepTimes times;
   for (int i = -1; i < kTimedFrames; ++i) {
-    Picture frame = drawn;
+    Picture picture = drawn;
     Stopwatch watch;
-    const FloodStats one = fill(frame);
+    const FloodStats one = fill(picture);
     if (i < 0) continue;
     times.wholeMs += watch.lapMs() / kTimedFrames;
     times.sum.seeds = one.seeds;
@@ -236,10 +237,10 @@ void times(const Store& store, const std::vector<View>& views, const std::vector
         Picture drawn;
         rasterizer->draw(thin, view, {}, drawn);
         row(v, view, thin.pointCount, "CPU",
-            timesOf(drawn, [&](Picture& frame) { return floodFill(thin, view, {}, pool, frame); }));
+            timesOf(drawn, [&](Picture& picture) { return floodFill(thin, view, {}, pool, picture); }));
         if (flood == nullptr || width != kWidth) continue;
         row(v, view, thin.pointCount, "OpenGL",
-            timesOf(drawn, [&](Picture& frame) { return flood->fill(thin, view, {}, pool, frame); }));
+            timesOf(drawn, [&](Picture& picture) { return flood->fill(thin, view, {}, pool, picture); }));
       }
   if (flood != nullptr) std::cout << "\nOpenGL: " << device << '\n';
   flood.reset();
@@ -274,13 +275,13 @@ void steadiness(const Store& store, const std::vector<View>& views, const std::v
       for (std::size_t w = 0; w < ways.size(); ++w) {
         DrawOptions options;
         options.fill = ways[w].window;
-        Picture frame, before;
+        Picture picture, before;
         double sum = 0.0;
         for (std::size_t i = 0; i < path.size(); ++i) {
-          rasterizer->draw(thin[k], path[i], options, frame);
-          if (ways[w].flood) floodFill(thin[k], path[i], ways[w].settings, pool, frame);
-          if (i > 0) sum += flicker(full[i], path[i], frame, full[i - 1], path[i - 1], before);
-          std::swap(frame, before);
+          rasterizer->draw(thin[k], path[i], options, picture);
+          if (ways[w].flood) floodFill(thin[k], path[i], ways[w].settings, pool, picture);
+          if (i > 0) sum += flicker({path[i], full[i], picture}, {path[i - 1], full[i - 1], before});
+          std::swap(picture, before);
         }
         std::ostringstream cell;
         cell << std::fixed << std::setprecision(1) << ' ' << sum / (kSteadyFrames - 1) << " |";

@@ -12,6 +12,7 @@
 #include "render/progressive/point_pool.h"
 #include "render/progressive/pool_manager.h"
 #include "render/progressive/shuffle.h"
+#include "tests/support/perfect_shuffle.h"
 
 namespace strata::bench {
 namespace {
@@ -29,7 +30,7 @@ void shuffleTable(std::uint32_t part) {
       std::vector<std::uint32_t> points(kShares), pairs(kShares);
       std::uint64_t last = kShares;
       for (std::uint32_t i = 0; i < size; ++i) {
-        const std::uint32_t place = way == 0 ? perfectShuffle(i, size, perfectShuffles(size)) : keyed(i);
+        const std::uint32_t place = way == 0 ? test::perfectShuffle(i, size, test::perfectShuffles(size)) : keyed(i);
         const std::uint64_t share = std::uint64_t{place} * kShares / size;
         ++points[share];
         pairs[share] += share == last;

@@ -45,17 +45,16 @@ Scene makeScene(const Scale& scale) {
   return scene;
 }
 
-std::unique_ptr<ProgressiveRasterizer> progressive(std::uint64_t pointsPerFrame, std::uint64_t pool,
-                                                   Shuffle shuffle = Shuffle::keyed) {
-  return createProgressiveRasterizer(createHeadlessContext(), {pointsPerFrame, kNoLimit, pool, shuffle, 1});
+std::unique_ptr<ProgressiveRasterizer> progressive(std::uint64_t pointsPerFrame, std::uint64_t pool) {
+  return createProgressiveRasterizer(createHeadlessContext(), {pointsPerFrame, kNoLimit, pool, 1});
 }
 
 /// Takes all that the view shows into the pool and draws until the picture is finished.
 void fillPool(ProgressiveRasterizer& rasterizer, const RenderList& list, const View& view) {
-  Picture frame;
+  Picture picture;
   const ProgressiveOptions options = rasterizer.options();
   rasterizer.setOptions({kNoLimit, kNoLimit});
-  while (!isFinished(rasterizer.draw(list, view, {}, frame))) {
+  while (!isFinished(rasterizer.draw(list, view, {}, picture))) {
   }
   rasterizer.setOptions(options);
 }
@@ -73,13 +72,13 @@ struct Times {
 Times timeFrames(Rasterizer& rasterizer, const std::function<const RenderList&(int)>& listOf, View view, int frames) {
   const auto* const steps = dynamic_cast<const ProgressiveRasterizer*>(&rasterizer);
   std::vector<double> values[10];
-  Picture frame;
+  Picture picture;
   const glm::dvec3 step = 0.0005 * glm::distance(view.eye, view.target) * viewBasis(view).right;
   for (int i = -2; i < frames; ++i) {
     view.eye += step;
     view.target += step;
     Stopwatch watch;
-    const DrawStats stats = rasterizer.draw(listOf(i + 2), view, {}, frame);
+    const DrawStats stats = rasterizer.draw(listOf(i + 2), view, {}, picture);
     const double ms = watch.lapMs();
     if (i < 0) continue;
     const ProgressiveStats p = steps != nullptr ? steps->progress() : ProgressiveStats{};
@@ -99,14 +98,14 @@ Times timeFrames(Rasterizer& rasterizer, const RenderList& list, const View& vie
 
 double millions(std::uint64_t points) { return static_cast<double>(points) * 1e-6; }
 
-void savePicture(const Scale& scale, const std::string& name, const Picture& frame) {
+void savePicture(const Scale& scale, const std::string& name, const Picture& picture) {
   if (!scale.pictures.empty())
-    writePng(scale.pictures + "/" + name + ".png", {frame.width, frame.height, frame.colour});
+    writePng(scale.pictures + "/" + name + ".png", {picture.width, picture.height, picture.colour});
 }
 
 /// Frames until shares of the pixels are final, after a jump of the camera to nodes that are in the pool.
 void convergenceTable(const Scale& scale, const Scene& scene) {
-  Picture wanted, frame;
+  Picture wanted, picture;
   {
     RasterizerOptions room;
     room.uploadBytesPerFrame = kNoLimit;
@@ -116,46 +115,40 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
   }
   std::printf("Frames until pixels are final after a jump of the camera, of %.1f M points in the pool:\n\n",
               millions(scene.list.pointCount));
-  std::printf("| pool | shuffle | a frame | turn | 90 %% | 99 %% | 100 %% |\n|---|---|---|---|---|---|---|\n");
+  std::printf("| pool | a frame | turn | 90 %% | 99 %% | 100 %% |\n|---|---|---|---|---|---|\n");
   struct Way {
     std::uint64_t pool;
-    Shuffle shuffle;
     std::vector<int> shares;
   };
   const std::uint64_t least = scene.list.pointCount * 11 / 10, square = std::bit_ceil(least);
-  std::vector<Way> ways{{least, Shuffle::keyed, {5, 10, 20, 40}}, {2 * least, Shuffle::keyed, {20}}};
-  if (!scale.pictures.empty()) {
-    ways.push_back({square, Shuffle::keyed, {20}});
-    ways.push_back({square, Shuffle::perfect, {20}});
-  }
+  std::vector<Way> ways{{least, {5, 10, 20, 40}}, {2 * least, {20}}};
+  if (!scale.pictures.empty()) ways.push_back({square, {20}});
   for (const Way& way : ways) {
-    const auto rasterizer = progressive(kNoLimit, way.pool, way.shuffle);
+    const auto rasterizer = progressive(kNoLimit, way.pool);
     for (const int share : way.shares) {
       fillPool(*rasterizer, scene.list, scene.view);
-      rasterizer->draw(scene.list, scene.away, {}, frame);
+      rasterizer->draw(scene.list, scene.away, {}, picture);
       const std::uint64_t n = scene.list.pointCount / static_cast<std::uint64_t>(share);
       rasterizer->setOptions({n, kNoLimit});
       int reached[3] = {0, 0, 0};
       bool finished = false;
       for (int count = 1; !finished; ++count) {
-        finished = isFinished(rasterizer->draw(scene.list, scene.view, {}, frame));
+        finished = isFinished(rasterizer->draw(scene.list, scene.view, {}, picture));
         std::size_t same = 0, all = 0;
         for (std::size_t i = 0; i < wanted.pointId.size(); ++i) {
           const bool covered = wanted.pointId[i] != Picture::kNoPoint;
           all += covered;
-          same += covered && wanted.pointId[i] == frame.pointId[i];
+          same += covered && wanted.pointId[i] == picture.pointId[i];
         }
         const double part = static_cast<double>(same) / static_cast<double>(all);
         for (const int k : {0, 1, 2})
           if (reached[k] == 0 && part >= (k == 0 ? 0.9 : k == 1 ? 0.99 : 1.0)) reached[k] = count;
         if (share == 20 && way.pool == square && (count == 2 || count == 8))
-          savePicture(scale, std::string(way.shuffle == Shuffle::keyed ? "keyed" : "perfect") + std::to_string(count),
-                      frame);
+          savePicture(scale, "keyed" + std::to_string(count), picture);
       }
-      std::printf("| %.1f M | %s | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
-                  way.shuffle == Shuffle::keyed ? "keyed" : "perfect", millions(n),
-                  static_cast<double>(rasterizer->progress().turnPlaces) / static_cast<double>(n), reached[0],
-                  reached[1], reached[2]);
+      std::printf("| %.1f M | %.2f M | %.1f | %d | %d | %d |\n", millions(rasterizer->progress().poolPoints),
+                  millions(n), static_cast<double>(rasterizer->progress().turnPlaces) / static_cast<double>(n),
+                  reached[0], reached[1], reached[2]);
       std::fflush(stdout);
     }
   }

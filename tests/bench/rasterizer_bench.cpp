@@ -67,8 +67,8 @@ void measure(benchmark::State& state, const Step& step) {
 }
 
 void draw(benchmark::State& state, Rasterizer& rasterizer, const View& view, const DrawOptions& options = {}) {
-  Picture frame;
-  measure(state, [&] { return rasterizer.draw(town(), view, options, frame); });
+  Picture picture;
+  measure(state, [&] { return rasterizer.draw(town(), view, options, picture); });
 }
 
 std::unique_ptr<Rasterizer> cpuRasterizer(const benchmark::State& state) {
@@ -91,11 +91,11 @@ void cpuWith(benchmark::State& state, int pointSize, int fill, bool edl, Shading
 /// Two eyes in one pass over the points, or one after the other.
 void eyes(benchmark::State& state, Rasterizer& rasterizer, bool together) {
   const View views[] = {farView(), otherEye(farView())};
-  Picture frames[2];
+  Picture pictures[2];
   measure(state, [&] {
-    if (together) return rasterizer.drawViews(town(), views, {}, frames);
-    DrawStats sum = rasterizer.draw(town(), views[0], {}, frames[0]);
-    addStats(rasterizer.draw(town(), views[1], {}, frames[1]), sum);
+    if (together) return rasterizer.drawViews(town(), views, {}, pictures);
+    DrawStats sum = rasterizer.draw(town(), views[0], {}, pictures[0]);
+    addStats(rasterizer.draw(town(), views[1], {}, pictures[1]), sum);
     return sum;
   });
 }
@@ -116,12 +116,12 @@ void kernel(benchmark::State& state) {
   if (whole == plan.batches.end()) return state.SkipWithError("no batch is wholly in the picture");
   const PlannedBatch& batch = *whole;
   const NodeData& node = *batch.node;
-  const GridTransform& grid = plan.grids[batch.place.grid];
+  const GridTransform& grid = plan.grids[batch.mapping.grid];
   view.x = grid.x;
   view.y = grid.y;
   view.depth = grid.depth;
-  view.offset = batch.place.offset;
-  view.shift = batch.place.shift;
+  view.offset = batch.mapping.offset;
+  view.shift = batch.mapping.shift;
   for (int axis = 0; axis < 3; ++axis) view.shift[axis] -= 10 * (static_cast<int>(precision) - 1);
   view.port = viewport(plan.constants);
   view.inside = state.range(2) != 0;

@@ -5,6 +5,7 @@
 
 #include "render/create_rasterizer.h"
 #include "render/flood/gl_flood.h"
+#include "tests/support/faithful_flood.h"
 #include "tests/support/fill_judge.h"
 #include "tests/support/gl_contexts.h"
 #include "tests/support/synthetic_nodes.h"
@@ -50,22 +51,22 @@ class GlFloodTest : public testing::TestWithParam<test::ContextKind> {
                             std::uint64_t leastFilled = 500) {
     Picture holes;
     createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, holes);
-    Picture expected = holes, frame = holes;
+    Picture expected = holes, picture = holes;
     const ThreadPool pool(2);
     EXPECT_GE(floodFill(list, view, settings, pool, expected).filled, leastFilled);
     context_->makeCurrent();
-    flood_->fill(list, view, settings, pool, frame);
+    flood_->fill(list, view, settings, pool, picture);
     std::size_t otherColours = 0, otherIds = 0, uncovered = 0, farther = 0;
     for (std::size_t i = 0; i < expected.colour.size(); ++i) {
       int largest = 0;
       for (int shift = 0; shift < 24; shift += 8)
         largest = std::max(largest, std::abs(static_cast<int>(expected.colour[i] >> shift & 255u) -
-                                             static_cast<int>(frame.colour[i] >> shift & 255u)));
+                                             static_cast<int>(picture.colour[i] >> shift & 255u)));
       otherColours += largest > kSameColour;
-      otherIds += expected.pointId[i] != frame.pointId[i];
-      uncovered += (expected.pointId[i] == Picture::kNoPoint) != (frame.pointId[i] == Picture::kNoPoint);
-      farther += expected.pointId[i] == frame.pointId[i] && expected.pointId[i] != Picture::kNoPoint &&
-                 !(std::abs(expected.depth[i] - frame.depth[i]) <= 0.002f * expected.depth[i]);
+      otherIds += expected.pointId[i] != picture.pointId[i];
+      uncovered += (expected.pointId[i] == Picture::kNoPoint) != (picture.pointId[i] == Picture::kNoPoint);
+      farther += expected.pointId[i] == picture.pointId[i] && expected.pointId[i] != Picture::kNoPoint &&
+                 !(std::abs(expected.depth[i] - picture.depth[i]) <= 0.002f * expected.depth[i]);
     }
     const auto share = [&](double of) { return of * static_cast<double>(expected.colour.size()); };
     EXPECT_LE(static_cast<double>(otherColours), share(kMostOther));
@@ -97,7 +98,7 @@ TEST_P(GlFloodTest, HasTheCpusPictureWithNormals) {
 
 TEST_P(GlFloodTest, HasTheCpusPictureWithThePapersSettings) {
   const RenderList list = town();
-  expectTheCpusPicture(list, viewOf(list, 0.5), faithfulFlood(100.0f, 0.02f));
+  expectTheCpusPicture(list, viewOf(list, 0.5), test::faithfulFlood(100.0f, 0.02f));
 }
 
 TEST_P(GlFloodTest, HasTheCpusPictureWithoutPerspective) {
@@ -153,14 +154,14 @@ TEST_P(FillingRasterizer, DrawsFrameAfterFrameAsTheCpuDoes) {
   DrawOptions options;
   for (const bool fill : {true, false, true, true}) {
     options.jumpFlood = fill;
-    Picture expected, frame;
+    Picture expected, picture;
     createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, expected);
-    rasterizer->draw(list, view, options, frame);
+    rasterizer->draw(list, view, options, picture);
     std::size_t other = 0;
     for (std::size_t i = 0; i < expected.colour.size(); ++i)
       for (int shift = 0; shift < 24; shift += 8)
         if (std::abs(static_cast<int>(expected.colour[i] >> shift & 255u) -
-                     static_cast<int>(frame.colour[i] >> shift & 255u)) > kSameColour) {
+                     static_cast<int>(picture.colour[i] >> shift & 255u)) > kSameColour) {
           ++other;
           break;
         }

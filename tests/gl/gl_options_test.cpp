@@ -34,17 +34,17 @@ class GlOptions : public testing::TestWithParam<Backend> {
   /// The same as the cpu's, but for points that fall to the other side of an edge. Colours within `alike` of 255 are.
   void expectTheCpusPicture(const View& view, const DrawOptions& options, double mostOther = 0.002, int alike = 0) {
     const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
-    Picture expected, frame;
+    Picture expected, picture;
     cpu->draw(list_, view, options, expected);
-    rasterizer_->draw(list_, view, options, frame);
+    rasterizer_->draw(list_, view, options, picture);
     std::size_t covered = 0, otherIds = 0, otherColours = 0;
     for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
       covered += expected.pointId[i] != Picture::kNoPoint;
-      const bool same = expected.pointId[i] == frame.pointId[i];
+      const bool same = expected.pointId[i] == picture.pointId[i];
       otherIds += !same;
       for (int shift = 0; same && shift < 24; shift += 8) {
         const int apart =
-            static_cast<int>(expected.colour[i] >> shift & 255u) - static_cast<int>(frame.colour[i] >> shift & 255u);
+            static_cast<int>(expected.colour[i] >> shift & 255u) - static_cast<int>(picture.colour[i] >> shift & 255u);
         if (std::abs(apart) <= alike) continue;
         ++otherColours;
         break;
@@ -172,8 +172,8 @@ TEST_P(GlOptions, CountAsTheCpuDoes) {
   View close = view_;
   close.eye = close.target + 0.05 * (close.eye - close.target);
   for (const View& view : {view_, close}) {
-    Picture frame;
-    const DrawStats expected = cpu->draw(list_, view, {}, frame), stats = rasterizer_->draw(list_, view, {}, frame);
+    Picture picture;
+    const DrawStats expected = cpu->draw(list_, view, {}, picture), stats = rasterizer_->draw(list_, view, {}, picture);
     EXPECT_EQ(stats.pointsDrawn, expected.pointsDrawn);
     EXPECT_EQ(stats.batchesDrawn, expected.batchesDrawn);
     EXPECT_EQ(stats.batchesCulled, expected.batchesCulled);
@@ -198,9 +198,9 @@ TEST(ComputeLock, FinishesThePictureWhereALockStaysTaken) {
     ComputeExperiment experiment;
     experiment.lockTurns = turns;
     const auto rasterizer = createComputeRasterizer(ComputeWay::computeLock, std::move(context), {}, experiment);
-    Picture frame;
-    const DrawStats stats = rasterizer->draw(list, view, {}, frame);
-    const test::Comparison result = test::compareToOracle(list, view, frame);
+    Picture picture;
+    const DrawStats stats = rasterizer->draw(list, view, {}, picture);
+    const test::Comparison result = test::compareToOracle(list, view, picture);
     EXPECT_GE(result.agreement(), 0.999) << turns;
     EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
     EXPECT_TRUE(turns > 0 || stats.lockRepairs == 1u);
@@ -295,11 +295,11 @@ TEST(GlRasterizers, TakeASmallerPoolWhereTheGpuHasNoMemory) {
   const auto rasterizer = createRasterizer(Backend::compute32, {}, std::move(scarce));
   const RenderList list = test::makeTown(kUtm, 200.0, 100000, 5);
   const View view = viewOfBox(test::boundsOf(list), kDirection, 512, 512, 1.0);
-  Picture frame;
-  const DrawStats stats = rasterizer->draw(list, view, {}, frame);
+  Picture picture;
+  const DrawStats stats = rasterizer->draw(list, view, {}, picture);
   EXPECT_EQ(stats.nodesNotUploaded, 0u);
   EXPECT_GT(stats.gpuBytes, 1000000u);
-  const test::Comparison result = test::compareToOracle(list, view, frame);
+  const test::Comparison result = test::compareToOracle(list, view, picture);
   EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
 }
 
@@ -309,10 +309,10 @@ TEST(GlRasterizers, DrawTheSmallestAndTheLargestImage) {
     STRATA_REQUIRE_CONTEXT(context, ContextKind::egl);
     if (backend == Backend::compute64 && !hasWideAtomics(*context)) continue;
     const auto rasterizer = createRasterizer(backend, {}, std::move(context));
-    Picture frame;
+    Picture picture;
     const View dot = viewOfBox(test::boundsOf(list), kDirection, 1, 1, 1.0);
-    rasterizer->draw(list, dot, {}, frame);
-    EXPECT_EQ(test::compareToOracle(list, dot, frame).unexplained, 0u);
+    rasterizer->draw(list, dot, {}, picture);
+    EXPECT_EQ(test::compareToOracle(list, dot, picture).unexplained, 0u);
   }
 }
 

@@ -38,24 +38,24 @@ class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKi
   double wantedAgreement() const { return backend() == Backend::points ? 0.995 : 0.999; }
 
   void expectOraclesPicture(const RenderList& list, const View& view) {
-    rasterizer_->draw(list, view, {}, frame_);
-    const test::Comparison result = test::compareToOracle(list, view, frame_);
+    rasterizer_->draw(list, view, {}, picture_);
+    const test::Comparison result = test::compareToOracle(list, view, picture_);
     EXPECT_GE(result.agreement(), wantedAgreement()) << result.different << " of " << result.covered << " differ";
     EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
     covered_ += result.covered;
   }
 
   std::unique_ptr<Rasterizer> rasterizer_;
-  Picture frame_;
+  Picture picture_;
   std::uint64_t covered_ = 0;
 };
 
 #define STRATA_CREATE_OR_SKIP(...) \
   if (!create(__VA_ARGS__)) GTEST_SKIP() << "no " << test::contextName(std::get<1>(GetParam())) << " context here"
 
-std::size_t coveredPixels(const Picture& frame) {
+std::size_t coveredPixels(const Picture& picture) {
   std::size_t covered = 0;
-  for (const std::uint32_t id : frame.pointId) covered += id != Picture::kNoPoint;
+  for (const std::uint32_t id : picture.pointId) covered += id != Picture::kNoPoint;
   return covered;
 }
 
@@ -106,16 +106,16 @@ TEST_P(GlRasterizer, DrawsHugeCoordinatesFromClose) {
 TEST_P(GlRasterizer, DrawsNothingOfNothingAndOnePixelOfOnePoint) {
   STRATA_CREATE_OR_SKIP();
   View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 201, 1.0);
-  rasterizer_->draw({}, view, {}, frame_);
-  EXPECT_EQ(coveredPixels(frame_), 0u);
+  rasterizer_->draw({}, view, {}, picture_);
+  EXPECT_EQ(coveredPixels(picture_), 0u);
   const RenderList list = test::makeList({test::makeNode({}, {kUtm}, 0.001)});
   expectOraclesPicture(list, view);
-  EXPECT_EQ(coveredPixels(frame_), 1u);
+  EXPECT_EQ(coveredPixels(picture_), 1u);
   view.width = view.height = 1;
   expectOraclesPicture(list, view);
   view.width = 0;
-  rasterizer_->draw(list, view, {}, frame_);
-  EXPECT_TRUE(frame_.colour.empty());
+  rasterizer_->draw(list, view, {}, picture_);
+  EXPECT_TRUE(picture_.colour.empty());
 }
 
 TEST_P(GlRasterizer, GivesTheSameColoursAsTheCpu) {
@@ -130,13 +130,13 @@ TEST_P(GlRasterizer, GivesTheSameColoursAsTheCpu) {
     options.colour = mode;
     options.pointSize = mode == ColourMode::elevation ? 3 : 1;
     Picture expected;
-    rasterizer_->draw(list, view, options, frame_);
+    rasterizer_->draw(list, view, options, picture_);
     cpu->draw(list, view, options, expected);
     std::size_t otherIds = 0, otherColours = 0;
     for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
-      const bool same = expected.pointId[i] == frame_.pointId[i];
+      const bool same = expected.pointId[i] == picture_.pointId[i];
       otherIds += !same;
-      otherColours += same && expected.colour[i] != frame_.colour[i];
+      otherColours += same && expected.colour[i] != picture_.colour[i];
     }
     EXPECT_EQ(otherColours, 0u);
     // A point that falls to the other side of an edge changes pointSize^2 pixels.
@@ -156,13 +156,13 @@ TEST_P(GlRasterizer, UploadsUnderTheBudgetOfAFrameUntilAllIsThere) {
   std::uint32_t missing = static_cast<std::uint32_t>(list.items.size());
   for (int frames = 0; missing > 0; ++frames) {
     ASSERT_LT(frames, 20);
-    const DrawStats stats = rasterizer_->draw(list, view, {}, frame_);
+    const DrawStats stats = rasterizer_->draw(list, view, {}, picture_);
     EXPECT_LE(stats.bytesUploaded, std::max(options.uploadBytesPerFrame, largest));
     EXPECT_LT(stats.nodesNotUploaded, missing);
     missing = stats.nodesNotUploaded;
   }
   expectOraclesPicture(list, view);
-  EXPECT_EQ(rasterizer_->draw(list, view, {}, frame_).bytesUploaded, 0u);
+  EXPECT_EQ(rasterizer_->draw(list, view, {}, picture_).bytesUploaded, 0u);
 }
 
 TEST_P(GlRasterizer, HoldsNoMoreThanItsMemoryAndDrawsWhatFits) {
@@ -171,14 +171,14 @@ TEST_P(GlRasterizer, HoldsNoMoreThanItsMemoryAndDrawsWhatFits) {
   STRATA_CREATE_OR_SKIP(options);
   const RenderList list = test::makeTown(kUtm, 200.0, 200000, 7);
   const View view = viewOfBox(test::boundsOf(list), kDirection, 512, 512, 1.0);
-  const DrawStats stats = rasterizer_->draw(list, view, {}, frame_);
+  const DrawStats stats = rasterizer_->draw(list, view, {}, picture_);
   EXPECT_LE(stats.gpuBytes, options.gpuBytes);
   EXPECT_GT(stats.nodesNotUploaded, 0u);
   EXPECT_GT(stats.pointsDrawn, 0u);
   for (std::size_t i = 0; i < list.items.size(); ++i) {  // one after another, each evicting those before
     const RenderList one = test::makeList({list.items[i].node});
     if (one.pointCount * 8 > options.gpuBytes || one.pointCount == 0) continue;
-    EXPECT_EQ(rasterizer_->draw(one, view, {}, frame_).nodesNotUploaded, 0u);
+    EXPECT_EQ(rasterizer_->draw(one, view, {}, picture_).nodesNotUploaded, 0u);
     expectOraclesPicture(one, view);
   }
 }
@@ -230,7 +230,7 @@ TEST_P(GlRasterizer, DrawsFromManyPages) {
   list.pointCount = 60000;
   const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 512, 512, 1.0);
   expectOraclesPicture(list, view);
-  EXPECT_GE(rasterizer_->draw(list, view, {}, frame_).gpuBytes, 2 * (std::uint64_t{64} << 20));
+  EXPECT_GE(rasterizer_->draw(list, view, {}, picture_).gpuBytes, 2 * (std::uint64_t{64} << 20));
 }
 
 TEST_P(GlRasterizer, DrawsANodeLongerThanAPage) {
@@ -241,7 +241,7 @@ TEST_P(GlRasterizer, DrawsANodeLongerThanAPage) {
   const RenderList list = test::makeList({longNode(0, 6000000, 9)});
   const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 300, 300, 1.0);
   expectOraclesPicture(list, view);
-  EXPECT_EQ(rasterizer_->draw(list, view, {}, frame_).nodesNotUploaded, 0u);
+  EXPECT_EQ(rasterizer_->draw(list, view, {}, picture_).nodesNotUploaded, 0u);
 }
 
 TEST_P(GlRasterizer, DrawsAnImageLargerThanOneStorageBlock) {

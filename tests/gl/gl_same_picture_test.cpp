@@ -51,9 +51,9 @@ TEST_P(SamePicture, AsTheOraclesByEveryWay) {
     const double wanted = backend == Backend::points ? 0.995 : 0.999;
     std::uint64_t covered = 0, different = 0;
     for (const View& view : views) {
-      Picture frame;
-      rasterizer->draw(list, view, {}, frame);
-      const test::Comparison result = test::compareToOracle(list, view, frame);
+      Picture picture;
+      rasterizer->draw(list, view, {}, picture);
+      const test::Comparison result = test::compareToOracle(list, view, picture);
       EXPECT_GE(result.agreement(), wanted) << result.different << " of " << result.covered << " differ";
       EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
       covered += result.covered;

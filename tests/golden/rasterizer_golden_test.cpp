@@ -37,9 +37,9 @@ void expectGolden(const std::string& name, const DrawOptions& options) {
   View view = viewOfBox(test::boundsOf(list), {1.0, 0.83, -0.6}, 320, 240, 1.0);
   view.target = {456789.0, 5412345.0, 300.0};
   view.eye = view.target + (view.eye - view.target) * 0.45;
-  Picture frame;
-  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
-  const Image actual{frame.width, frame.height, frame.colour};
+  Picture picture;
+  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, picture);
+  const Image actual{picture.width, picture.height, picture.colour};
   const std::string path = (test::sourceFolder() / "tests/golden" / (std::string(name) + ".png")).string();
   if (std::getenv("STRATA_ACCEPT_GOLDEN") != nullptr) writePng(path, actual);
   const double different = differentPart(actual, readPng(path));

@@ -32,12 +32,12 @@ FloodSeeds randomSeeds(int width, int height, double share, int planes, std::uin
     for (int x = 0; x < width; ++x) {
       const float depth = 1000.0f + 1000.0f * static_cast<float>(random() % static_cast<unsigned>(planes));
       seeds.at.push_back(kNoPixel);
-      seeds.place.push_back({});
+      seeds.points.push_back({});
       if (!stays(random)) continue;
       const std::uint32_t within = random() % 4u;
       seeds.at.back() =
           floodPixel(static_cast<std::uint32_t>(2 * x) + within % 2u, static_cast<std::uint32_t>(2 * y) + within / 2u);
-      seeds.place.back() = {depth, 40.0f};
+      seeds.points.back() = {depth, 40.0f};
     }
   return seeds;
 }
@@ -77,7 +77,7 @@ TEST(FloodLayers, HoldTheSeedOfEachPlaneThatIsClosestToThePixel) {
           const auto nearest = [&](const auto& some) {
             int least = 35 * 35;  // within the reach, with room
             for (const FloodPixel s : some)
-              if (s != kNoPixel && seeds.place[seeds.index(s)].depth == plane)
+              if (s != kNoPixel && seeds.points[seeds.index(s)].depth == plane)
                 least = std::min(least, distance2(s, x, y));
             return least;
           };
@@ -93,12 +93,12 @@ TEST(FloodLayers, HoldTheSeedOfEachPlaneThatIsClosestToThePixel) {
 TEST(FloodLayers, KeepASparseForegroundInFrontOfADenseBackground) {
   FloodSeeds seeds = randomSeeds(120, 90, 0.5, 1, 3);
   std::mt19937 random(5);
-  for (FloodPlace& place : seeds.place) place.depth = random() % 50 == 0 ? 1000.0f : 2000.0f;
+  for (FloodPoint& place : seeds.points) place.depth = random() % 50 == 0 ? 1000.0f : 2000.0f;
   const auto layers = findLayers(seeds, jumpsOf32(), pool());
   std::size_t with = 0;
   for (const FloodLayers& here : layers)
     with += std::any_of(here.begin(), here.end(),
-                        [&](FloodPixel s) { return s != kNoPixel && seeds.place[seeds.index(s)].depth == 1000.0f; });
+                        [&](FloodPixel s) { return s != kNoPixel && seeds.points[seeds.index(s)].depth == 1000.0f; });
   EXPECT_GE(static_cast<double>(with), 0.999 * static_cast<double>(layers.size()));
 }
 
@@ -160,7 +160,7 @@ TEST(FloodNeighbours, AreOfTheSamePlaneWhereTwoAreMixed) {
   for (const FloodPixel s : seedsOf(seeds))
     for (const FloodPixel other : neighbours[seeds.index(s)])
       if (other != kNoPixel) {
-        ASSERT_EQ(seeds.place[seeds.index(other)].depth, seeds.place[seeds.index(s)].depth);
+        ASSERT_EQ(seeds.points[seeds.index(other)].depth, seeds.points[seeds.index(s)].depth);
       }
 }
 
@@ -169,14 +169,14 @@ TEST(FloodNeighbours, HaveNormalsThatAreAlike) {
   FloodSeeds seeds = randomSeeds(100, 80, 0.3, 1, 2);
   std::mt19937 random(9);
   const std::uint32_t ways[] = {packFloodNormal({0.0f, 0.0f, -1.0f}), packFloodNormal({0.8f, 0.6f, 0.0f})};
-  for (std::size_t i = 0; i < seeds.at.size(); ++i) seeds.normal.push_back(ways[random() % 2]);
+  for (std::size_t i = 0; i < seeds.at.size(); ++i) seeds.normals.push_back(ways[random() % 2]);
   const auto neighbours = findNeighbours(seeds, findLayers(seeds, {}, pool()), {}, pool());
   std::size_t found = 0;
   for (const FloodPixel s : seedsOf(seeds))
     for (const FloodPixel other : neighbours[seeds.index(s)])
       if (other != kNoPixel) {
         ++found;
-        ASSERT_EQ(seeds.normal[seeds.index(other)], seeds.normal[seeds.index(s)]);
+        ASSERT_EQ(seeds.normals[seeds.index(other)], seeds.normals[seeds.index(s)]);
       }
   EXPECT_GT(found, 5 * seedsOf(seeds).size());
 }
@@ -222,9 +222,9 @@ Picture drawn(const RenderList& list, const View& view, bool jumpFlood, int poin
   DrawOptions options;
   options.pointSize = pointSize;
   options.jumpFlood = jumpFlood;
-  Picture frame;
-  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, frame);
-  return frame;
+  Picture picture;
+  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, options, picture);
+  return picture;
 }
 
 constexpr auto kEverywhere = [](double, double) { return true; };
@@ -239,10 +239,10 @@ glm::dvec2 onWall(const View& view, std::size_t pixel, double distance) {
 
 TEST(FloodFill, ClosesASparseWall) {
   const RenderList list = test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)});  // 6 pixels apart
-  const Picture frame = drawn(list, ahead(), true);
+  const Picture picture = drawn(list, ahead(), true);
   std::size_t open = 0;
-  for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
-  EXPECT_LE(open, frame.depth.size() / 100);
+  for (const float depth : picture.depth) open += std::abs(depth - 10.0f) > 0.05f;
+  EXPECT_LE(open, picture.depth.size() / 100);
 }
 
 /// As coarse positions do to a scan that is finer than the pixels: its points fall onto a lattice with gaps.
@@ -353,11 +353,11 @@ std::ptrdiff_t openBetweenLines(double apart, double along, bool ellipses) {
   auto node = std::make_shared<NodeData>(*test::makeNode(NodeKey(), points, 0.001));
   node->spacing = static_cast<float>(std::sqrt(apart * along));  // of as many points spread evenly
   const RenderList list = test::makeList({node});
-  Picture frame = drawn(list, ahead(), false);
+  Picture picture = drawn(list, ahead(), false);
   FloodSettings settings;
   settings.ellipses = ellipses;
-  floodFill(list, ahead(), settings, pool(), frame);
-  return std::count(frame.pointId.begin(), frame.pointId.end(), Picture::kNoPoint);
+  floodFill(list, ahead(), settings, pool(), picture);
+  return std::count(picture.pointId.begin(), picture.pointId.end(), Picture::kNoPoint);
 }
 
 TEST(FloodFill, ClosesTheGapsBetweenScanLines) { EXPECT_LT(openBetweenLines(0.6, 0.12, true), 600); }
@@ -377,8 +377,8 @@ TEST(FloodFill, FlickersLessThanThePictureWithHoles) {
   for (int i = 0; i < 12; ++i) {
     const Picture full = drawn(whole, view, false), holes = drawn(thin, view, false), closed = drawn(thin, view, true);
     if (i > 0) {
-      open += test::flicker(full, view, holes, fullBefore, before, openBefore);
-      filled += test::flicker(full, view, closed, fullBefore, before, filledBefore);
+      open += test::flicker({view, full, holes}, {before, fullBefore, openBefore});
+      filled += test::flicker({view, full, closed}, {before, fullBefore, filledBefore});
     }
     fullBefore = full;
     openBefore = holes;
@@ -407,10 +407,10 @@ TEST(FloodFill, WorksWithoutPerspectiveToo) {
   View view = ahead();
   view.orthographic = true;
   view.orthographicHeight = 10.0;
-  const Picture frame = drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), view, true);
+  const Picture picture = drawn(test::makeList({wall(1, 10.0, 12.0, 0.35, kEverywhere)}), view, true);
   std::size_t open = 0;
-  for (const float depth : frame.depth) open += std::abs(depth - 10.0f) > 0.05f;
-  EXPECT_LE(open, frame.depth.size() / 100);
+  for (const float depth : picture.depth) open += std::abs(depth - 10.0f) > 0.05f;
+  EXPECT_LE(open, picture.depth.size() / 100);
 }
 
 TEST(FloodFill, TakesEmptyAndTinyPictures) {

@@ -54,7 +54,7 @@ TEST(SelectionClip, LeavesOutNothingThatIsSeenAtAnyPrecision) {
         test::viewOfTerrain(terrain.info, random.in(0.1, 0.9), random.in(0.0, 0.6), random.in(5.0, 150.0), 320, 240);
     DrawOptions draw;
     draw.clip = randomClip(terrain.info.rootCube(), random);
-    Picture frames[2];
+    Picture pictures[2];
     for (const bool clipped : {false, true}) {
       SelectionOptions options;
       options.pointBudget = SelectionOptions::kMaxPointBudget;
@@ -74,10 +74,10 @@ TEST(SelectionClip, LeavesOutNothingThatIsSeenAtAnyPrecision) {
         list.pointCount += selected.pointCount;
       }
       (clipped ? left : all) += selection.nodes.size();
-      rasterizer->draw(list, view, draw, frames[clipped ? 1 : 0]);
+      rasterizer->draw(list, view, draw, pictures[clipped ? 1 : 0]);
     }
-    ASSERT_EQ(frames[0].colour, frames[1].colour) << "round " << round;
-    ASSERT_EQ(frames[0].depth, frames[1].depth) << "round " << round;
+    ASSERT_EQ(pictures[0].colour, pictures[1].colour) << "round " << round;
+    ASSERT_EQ(pictures[0].depth, pictures[1].depth) << "round " << round;
   }
   EXPECT_LT(left, all * 3 / 4) << "or nothing was tried";
   EXPECT_GT(left, all / 20);

@@ -128,7 +128,7 @@ TEST_P(Occlusion, NoPixelOfTheFullPictureBelongsToANodeThatWasCulled) {
     const std::vector<bool> culled = culledNodes(scan, without, with);
     culledInAll += without.nodes.size() - with.nodes.size();
 
-    const Picture picture = test::oracleFrame(all, view);
+    const Picture picture = test::oraclePicture(all, view);
     std::vector<std::uint64_t> firstId;
     std::uint64_t points = 0;
     for (const RenderItem& item : all.items) {

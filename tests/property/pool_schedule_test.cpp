@@ -18,8 +18,8 @@ class PoolTurnOf : public testing::TestWithParam<Sizes> {};
 
 TEST_P(PoolTurnOf, HasBandsThatCoverThePoolInOrder) {
   std::uint32_t at = 0;
-  const std::vector<PoolTurn::Band> bands = PoolTurn(GetParam().size, GetParam().bands).bands();
-  for (const PoolTurn::Band& band : bands) {
+  const std::vector<PoolSchedule::Band> bands = PoolSchedule(GetParam().size, GetParam().bands).bands();
+  for (const PoolSchedule::Band& band : bands) {
     EXPECT_EQ(band.first, at);
     EXPECT_GT(band.end, band.first);
     at = band.end;
@@ -31,8 +31,8 @@ TEST_P(PoolTurnOf, HasBandsThatCoverThePoolInOrder) {
 /// A frame shows random blocks, frees others and goes on for a random number of places.
 TEST_P(PoolTurnOf, MeetsEachPlaceOfItsBandsOnceAndTellsWhenGhostsAreGone) {
   const auto [size, bandCount] = GetParam();
-  PoolTurn turn(size, bandCount);
-  const std::vector<PoolTurn::Band> bands = turn.bands();
+  PoolSchedule turn(size, bandCount);
+  const std::vector<PoolSchedule::Band> bands = turn.bands();
   const std::uint32_t block = std::min<std::uint32_t>(size, 700);
   std::mt19937 random(size);
   const auto below = [&](std::uint32_t n) { return static_cast<std::uint32_t>(random()) % n; };
@@ -67,7 +67,7 @@ TEST_P(PoolTurnOf, MeetsEachPlaceOfItsBandsOnceAndTellsWhenGhostsAreGone) {
     }
     const std::uint64_t before = turn.pending(), count = std::min<std::uint64_t>(before, below(size) + 1);
     std::uint64_t places = 0;
-    for (const PoolTurn::Band& range : turn.next(count)) {
+    for (const PoolSchedule::Band& range : turn.next(count)) {
       ASSERT_LT(range.first, range.end);
       places += range.end - range.first;
       for (std::uint32_t i = range.first; i < range.end; ++i) {
@@ -78,7 +78,7 @@ TEST_P(PoolTurnOf, MeetsEachPlaceOfItsBandsOnceAndTellsWhenGhostsAreGone) {
     ASSERT_EQ(places, count);
     ASSERT_EQ(turn.pending(), before - count);
     if (turn.pending() > 0) continue;
-    for (const PoolTurn::Band& band : bands) {  // finished: all of a band or nothing
+    for (const PoolSchedule::Band& band : bands) {  // finished: all of a band or nothing
       const auto first = met.begin() + band.first, end = met.begin() + band.end;
       ASSERT_EQ(std::count(first, end, 1) % static_cast<std::ptrdiff_t>(band.end - band.first), 0);
     }
@@ -88,12 +88,12 @@ TEST_P(PoolTurnOf, MeetsEachPlaceOfItsBandsOnceAndTellsWhenGhostsAreGone) {
 
 TEST_P(PoolTurnOf, IsAsLongAsTheBandsThatAreShown) {
   const auto [size, bandCount] = GetParam();
-  PoolTurn turn(size, bandCount);
+  PoolSchedule turn(size, bandCount);
   std::vector<std::uint32_t> slots;
   turn.restart();
   EXPECT_EQ(turn.places(), 0u) << "nothing is shown of any";
   std::uint64_t places = 0;
-  for (const PoolTurn::Band& band : turn.bands()) {
+  for (const PoolSchedule::Band& band : turn.bands()) {
     turn.shown(band.first, 1);
     turn.shown(band.end - 1, 1);
     EXPECT_EQ(turn.places(), places += band.end - band.first);
@@ -108,7 +108,7 @@ TEST_P(PoolTurnOf, IsAsLongAsTheBandsThatAreShown) {
 
 TEST_P(PoolTurnOf, ClearsGhostsWithinATurnAlthoughNothingIsShownBesideThem) {
   const auto [size, bandCount] = GetParam();
-  PoolTurn turn(size, bandCount);
+  PoolSchedule turn(size, bandCount);
   turn.freed(7, 0, size);
   turn.restart();
   std::vector<std::uint32_t> slots;
@@ -130,14 +130,14 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PoolTurnOf,
                          });
 
 /// Bands in equal shares; what a short one has too few places for is the others'.
-TEST(PoolTurn, GoesOnInAllBandsEvenly) {
-  PoolTurn turn(16 * 4096 - 3000, 16);
-  for (const PoolTurn::Band& band : turn.bands()) turn.shown(band.first, 1);
+TEST(PoolSchedule, GoesOnInAllBandsEvenly) {
+  PoolSchedule turn(16 * 4096 - 3000, 16);
+  for (const PoolSchedule::Band& band : turn.bands()) turn.shown(band.first, 1);
   turn.restart();
   std::vector<std::uint32_t> places;
   for (int frame = 0; frame < 2; ++frame) {
     places.assign(16, 0);
-    for (const PoolTurn::Band& range : turn.next(16'000)) places[range.first / 4096] += range.end - range.first;
+    for (const PoolSchedule::Band& range : turn.next(16'000)) places[range.first / 4096] += range.end - range.first;
     if (frame == 0) {
       EXPECT_EQ(places, std::vector<std::uint32_t>(16, 1000));
     }

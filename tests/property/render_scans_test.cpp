@@ -18,15 +18,15 @@ void expectOraclesPictures(const std::string& input) {
   views.push_back(test::viewsAround(test::boundsOf(list), 2, 1920, 1080)[1]);
   const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
   for (const View& view : views) {
-    Picture frame, again;
-    cpu->draw(list, view, {}, frame);
-    const test::Comparison result = test::compareToOracle(list, view, frame);
+    Picture picture, again;
+    cpu->draw(list, view, {}, picture);
+    const test::Comparison result = test::compareToOracle(list, view, picture);
     EXPECT_GE(result.agreement(), 0.999) << result.different << " of " << result.covered << " pixels differ";
     EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
     cpu->draw(list, view, {}, again);
-    EXPECT_EQ(frame.pointId, again.pointId);
-    EXPECT_EQ(frame.depth, again.depth);
-    EXPECT_EQ(frame.colour, again.colour);
+    EXPECT_EQ(picture.pointId, again.pointId);
+    EXPECT_EQ(picture.depth, again.depth);
+    EXPECT_EQ(picture.colour, again.colour);
   }
 }
 

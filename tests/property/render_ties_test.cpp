@@ -66,9 +66,9 @@ std::map<GridPoint, std::uint32_t> lowestIds(const RenderList& list, const ViewC
 }
 
 Picture drawn(const RenderList& list, const View& view) {
-  Picture frame;
-  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, frame);
-  return frame;
+  Picture picture;
+  createRasterizer(Backend::cpu, {}, nullptr)->draw(list, view, {}, picture);
+  return picture;
 }
 
 TEST(Ties, GoToTheLowestIdOfAllPointsOfThePlace) {
@@ -77,9 +77,9 @@ TEST(Ties, GoToTheLowestIdOfAllPointsOfThePlace) {
     const Box box{kUtm, kUtm + side};
     for (const View& view : test::viewsAround(box, 8, 400, 400)) {
       const auto lowest = lowestIds(list, viewConstants(view));
-      const Picture frame = drawn(list, view);
+      const Picture picture = drawn(list, view);
       std::size_t covered = 0, shared = 0;
-      for (const std::uint32_t id : frame.pointId) {
+      for (const std::uint32_t id : picture.pointId) {
         if (id == Picture::kNoPoint) continue;
         ++covered;
         shared += lowest.at(placed(list, viewConstants(view), id)) != id;

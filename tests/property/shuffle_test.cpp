@@ -8,8 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/perfect_shuffle.h"
+
 namespace strata {
 namespace {
+
+using test::perfectShuffle;
+using test::perfectShuffles;
 
 std::vector<std::uint32_t> perfect(std::uint32_t size) {
   std::vector<std::uint32_t> places(size);

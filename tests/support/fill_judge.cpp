@@ -22,11 +22,11 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
 struct DepthRange {
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
 };
-DepthRange depthsAround(const Picture& frame, int x, int y) {
+DepthRange depthsAround(const Picture& picture, int x, int y) {
   DepthRange range;
-  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, frame.height - 1); ++v)
-    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, frame.width - 1); ++u) {
-      const float depth = frame.depth[static_cast<std::size_t>(v * frame.width + u)];
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, picture.height - 1); ++v)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, picture.width - 1); ++u) {
+      const float depth = picture.depth[static_cast<std::size_t>(v * picture.width + u)];
       if (!std::isfinite(depth)) continue;
       range.nearest = std::min(range.nearest, depth);
       range.farthest = std::max(range.farthest, depth);
@@ -87,11 +87,11 @@ FillJudgement judgeFill(const Picture& full, const Picture& filled) {
   return judged;
 }
 
-double flicker(const Picture& full, const View& view, const Picture& frame, const Picture& fullBefore,
-               const View& viewBefore, const Picture& before) {
-  const ViewBasis basis = viewBasis(view);
-  const double perPixel = 1.0 / pixelsAt(view, 1.0, 1.0);
-  const Projection earlier = projection(viewBefore);
+double flicker(const FilledFrame& now, const FilledFrame& before) {
+  const Picture& full = now.full;
+  const ViewBasis basis = viewBasis(now.view);
+  const double perPixel = 1.0 / pixelsAt(now.view, 1.0, 1.0);
+  const Projection earlier = projection(before.view);
   double sum = 0.0, places = 0.0;
   for (int y = 0; y < full.height; ++y)
     for (int x = 0; x < full.width; ++x) {
@@ -99,16 +99,16 @@ double flicker(const Picture& full, const View& view, const Picture& frame, cons
       if (full.pointId[i] == Picture::kNoPoint) continue;
       const double depth = static_cast<double>(full.depth[i]);
       const double side = (x + 0.5 - 0.5 * full.width) * perPixel, up = (0.5 * full.height - y - 0.5) * perPixel;
-      const glm::dvec3 place = view.eye + depth * (basis.forward + side * basis.right + up * basis.up);
+      const glm::dvec3 place = now.view.eye + depth * (basis.forward + side * basis.right + up * basis.up);
       const glm::dvec4 d(place - earlier.eye, 1.0);
       const double w = glm::dot(earlier.rowW, d);
       const double u = std::floor(glm::dot(earlier.rowX, d) / w), v = std::floor(glm::dot(earlier.rowY, d) / w);
       if (!(w > 0.0) || !(u >= 0.0 && v >= 0.0 && u < full.width && v < full.height)) continue;
       const auto j = static_cast<std::size_t>(v) * static_cast<std::size_t>(full.width) + static_cast<std::size_t>(u);
-      if (!(static_cast<double>(fullBefore.depth[j]) > (1.0 - static_cast<double>(kSameDepth)) * w)) continue;
+      if (!(static_cast<double>(before.full.depth[j]) > (1.0 - static_cast<double>(kSameDepth)) * w)) continue;
       for (int shift = 0; shift < 24; shift += 8)
-        sum += std::abs(static_cast<int>(frame.colour[i] >> shift & 255u) -
-                        static_cast<int>(before.colour[j] >> shift & 255u));
+        sum += std::abs(static_cast<int>(now.filled.colour[i] >> shift & 255u) -
+                        static_cast<int>(before.filled.colour[j] >> shift & 255u));
       places += 3.0;
     }
   return places > 0.0 ? sum / places : 0.0;

@@ -17,11 +17,17 @@ struct FillJudgement {
 };
 FillJudgement judgeFill(const Picture& full, const Picture& filled);
 
-/// How much the colours of surfaces change from one frame of a moving camera to the next: mean over red, green and blue
-/// of |difference|, 0 to 255. Each pixel of `full`, the picture of all points seen by `view`, says where its surface
-/// lies; `frame` and `before` are compared in the pixels that show this place in `view` and in `viewBefore`. Places
-/// outside of the frame before, and such that something hides there (by `fullBefore`), do not count.
-double flicker(const Picture& full, const View& view, const Picture& frame, const Picture& fullBefore,
-               const View& viewBefore, const Picture& before);
+/// One frame of a moving camera.
+struct FilledFrame {
+  const View& view;
+  const Picture& full;    ///< of all points
+  const Picture& filled;  ///< of fewer points, its holes filled
+};
+
+/// How much the colours of surfaces change between two successive frames: the mean over red, green and blue of the
+/// absolute difference, 0 to 255. Each pixel of now.full tells where a surface lies; the two filled pictures are
+/// compared in the pixels that show this place. Places that lie outside of the frame before, or are hidden in it, do
+/// not count.
+double flicker(const FilledFrame& now, const FilledFrame& before);
 
 }  // namespace strata::test

@@ -71,33 +71,34 @@ std::string describe(std::uint32_t id, const Projected& point) {
 
 }  // namespace
 
-Picture oracleFrame(const RenderList& list, const View& view, const DrawOptions& options) {
-  Picture frame;
-  frame.width = view.width;
-  frame.height = view.height;
+Picture oraclePicture(const RenderList& list, const View& view, const DrawOptions& options) {
+  Picture picture;
+  picture.width = view.width;
+  picture.height = view.height;
   const auto pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-  frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  frame.pointId.assign(pixels, Picture::kNoPoint);
+  picture.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  picture.pointId.assign(pixels, Picture::kNoPoint);
   forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) {
     if (!inImage(point, view)) return;
     const std::size_t at = static_cast<std::size_t>(point.row) * static_cast<std::size_t>(view.width) +
                            static_cast<std::size_t>(point.column);
     const float depth = static_cast<float>(point.depth);
-    if (depth < frame.depth[at] || (depth == frame.depth[at] && id < frame.pointId[at])) {
-      frame.depth[at] = depth;
-      frame.pointId[at] = id;
+    if (depth < picture.depth[at] || (depth == picture.depth[at] && id < picture.pointId[at])) {
+      picture.depth[at] = depth;
+      picture.pointId[at] = id;
     }
   });
-  return frame;
+  return picture;
 }
 
-Comparison compareToOracle(const RenderList& list, const View& view, const Picture& frame, const DrawOptions& options) {
-  const Picture expected = oracleFrame(list, view, options);
+Comparison compareToOracle(const RenderList& list, const View& view, const Picture& picture,
+                           const DrawOptions& options) {
+  const Picture expected = oraclePicture(list, view, options);
   std::vector<Projected> points(list.pointCount);
   forEachPoint(list, view, options, [&](std::uint32_t id, const Projected& point) { points[id] = point; });
   Comparison result;
   for (std::size_t i = 0; i < expected.pointId.size(); ++i) {
-    const std::uint32_t wanted = expected.pointId[i], found = frame.pointId[i];
+    const std::uint32_t wanted = expected.pointId[i], found = picture.pointId[i];
     if (wanted == Picture::kNoPoint && found == Picture::kNoPoint) continue;
     ++result.covered;
     if (wanted == found) continue;

@@ -11,7 +11,7 @@ namespace strata::test {
 /// The picture every rasterizer must give: every point placed by pointPosition() at its batch's precision and
 /// projected in double precision, one after another; smallest float depth wins, then the lower id. No culling, but what
 /// `options` clip, filter by class and leave out by gaze. Fills depth and pointId only.
-Picture oracleFrame(const RenderList& list, const View& view, const DrawOptions& options = {});
+Picture oraclePicture(const RenderList& list, const View& view, const DrawOptions& options = {});
 
 /// How a frame differs from the oracle's.
 struct Comparison {
@@ -27,7 +27,7 @@ struct Comparison {
 
 /// A difference counts as explained where the two points are a tie (depths equal within 1e-6 of themselves), or one of
 /// them lies within 1e-3 pixels of its pixel's edge, or within 1e-6 of the near plane.
-Comparison compareToOracle(const RenderList& list, const View& view, const Picture& frame,
+Comparison compareToOracle(const RenderList& list, const View& view, const Picture& picture,
                            const DrawOptions& options = {});
 
 }  // namespace strata::test

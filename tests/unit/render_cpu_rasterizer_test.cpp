@@ -19,9 +19,9 @@ const glm::dvec3 kDirection(1.0, 0.83, -0.71);
 Picture drawn(const RenderList& list, const View& view, int threads = 1, const DrawOptions& options = {}) {
   RasterizerOptions rasterizerOptions;
   rasterizerOptions.threads = threads;
-  Picture frame;
-  createCpuRasterizer(rasterizerOptions)->draw(list, view, options, frame);
-  return frame;
+  Picture picture;
+  createCpuRasterizer(rasterizerOptions)->draw(list, view, options, picture);
+  return picture;
 }
 
 void expectOraclesPicture(const RenderList& list, const View& view) {
@@ -48,10 +48,10 @@ std::vector<glm::dvec3> randomPoints(std::uint32_t count, const glm::dvec3& lo, 
   return points;
 }
 
-double coveredPart(const Picture& frame) {
+double coveredPart(const Picture& picture) {
   std::size_t covered = 0;
-  for (const std::uint32_t id : frame.pointId) covered += id != Picture::kNoPoint;
-  return static_cast<double>(covered) / static_cast<double>(frame.pointId.size());
+  for (const std::uint32_t id : picture.pointId) covered += id != Picture::kNoPoint;
+  return static_cast<double>(covered) / static_cast<double>(picture.pointId.size());
 }
 
 TEST(CpuRasterizer, GivesTheOraclesPictureOfATownFromAllSides) {
@@ -105,9 +105,9 @@ TEST(CpuRasterizer, GivesATieToTheLowerId) {
   View view;
   view.eye = {0.0, 0.0, 0.0};
   view.target = {0.0, 5.0, 0.0};
-  const Picture frame = drawn(list, view, 2);
+  const Picture picture = drawn(list, view, 2);
   std::size_t covered = 0;
-  for (const std::uint32_t id : frame.pointId) {
+  for (const std::uint32_t id : picture.pointId) {
     if (id == Picture::kNoPoint) continue;
     ++covered;
     EXPECT_EQ(id, 0u);
@@ -157,8 +157,8 @@ TEST(CpuRasterizer, DrawsNothingOfNothing) {
 TEST(CpuRasterizer, DrawsABatchOfOnePointAsOnePixel) {
   const RenderList list = test::makeList({test::makeNode({}, {kUtm}, 0.001)});
   const View view = viewOfBox({kUtm - 1.0, kUtm + 1.0}, kDirection, 301, 201, 1.0);
-  const Picture frame = drawn(list, view);
-  EXPECT_EQ(std::count(frame.pointId.begin(), frame.pointId.end(), 0u), 1);
+  const Picture picture = drawn(list, view);
+  EXPECT_EQ(std::count(picture.pointId.begin(), picture.pointId.end(), 0u), 1);
   expectOraclesPicture(list, view);
 }
 
@@ -170,8 +170,8 @@ TEST(CpuRasterizer, LeavesOutWhatIsBehindTheEyeOrNearerThanTheNearPlane) {
   view.target = {0.3, 1.0, 0.1};
   for (const double nearPlane : {1e-3, 0.5, 0.9}) {
     view.nearPlane = nearPlane;
-    const Picture frame = drawn(list, view);
-    for (const float depth : frame.depth) EXPECT_GE(depth, static_cast<float>(nearPlane));
+    const Picture picture = drawn(list, view);
+    for (const float depth : picture.depth) EXPECT_GE(depth, static_cast<float>(nearPlane));
     expectOraclesPicture(list, view);
   }
 }
@@ -195,9 +195,9 @@ TEST(CpuRasterizer, DrawsImagesOfOnePixelAndOf8192Squared) {
   View view = viewOfBox(test::boundsOf(list), kDirection, 1, 1, 1.0);
   EXPECT_EQ(drawn(list, view).colour.size(), 1u);
   view.width = view.height = 8192;
-  const Picture frame = drawn(list, view, 2);
-  EXPECT_EQ(frame.colour.size(), std::size_t{8192} * 8192);
-  EXPECT_GT(coveredPart(frame), 1e-3);
+  const Picture picture = drawn(list, view, 2);
+  EXPECT_EQ(picture.colour.size(), std::size_t{8192} * 8192);
+  EXPECT_GT(coveredPart(picture), 1e-3);
 }
 
 TEST(CpuRasterizer, RefusesToDrawAViewThatIsNotFinite) {
@@ -211,10 +211,10 @@ TEST(CpuRasterizer, CountsWhatItDrewAndCulled) {
   const RenderList list = test::makeTown(glm::dvec3(0.0), 100.0, 100000, 15);
   std::uint32_t batches = 0;
   for (const RenderItem& item : list.items) batches += static_cast<std::uint32_t>(item.node->batches.size());
-  Picture frame;
+  Picture picture;
   const auto rasterizer = createCpuRasterizer({});
   for (const View& view : test::viewsAround(test::boundsOf(list), 8, 256, 256)) {
-    const DrawStats stats = rasterizer->draw(list, view, {}, frame);
+    const DrawStats stats = rasterizer->draw(list, view, {}, picture);
     EXPECT_EQ(stats.batchesDrawn + stats.batchesCulled, batches);
     EXPECT_EQ(stats.batchesAt[0] + stats.batchesAt[1] + stats.batchesAt[2], stats.batchesDrawn);
     EXPECT_LE(stats.pointsDrawn, list.pointCount);

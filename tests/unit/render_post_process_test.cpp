@@ -76,47 +76,47 @@ TEST(Dilate, GivesPointsOfGrowingSizeTheSameAsDrawingEachAlone) {
 
 std::vector<float> scratch;
 
-Picture flatFrame(int side, float depth) {
-  Picture frame;
-  frame.width = frame.height = side;
+Picture flatPicture(int side, float depth) {
+  Picture picture;
+  picture.width = picture.height = side;
   const auto count = static_cast<std::size_t>(side * side);
-  frame.depth.assign(count, depth);
-  frame.pointId.assign(count, 0);
-  frame.colour.assign(count, 0xff80ff40u);
-  return frame;
+  picture.depth.assign(count, depth);
+  picture.pointId.assign(count, 0);
+  picture.colour.assign(count, 0xff80ff40u);
+  return picture;
 }
 
 TEST(EyeDomeLighting, LeavesAFlatPictureAndTheBackgroundAsTheyAre) {
   const ThreadPool pool(1);
-  Picture frame = flatFrame(9, 5.0f);
+  Picture picture = flatPicture(9, 5.0f);
   for (std::size_t i = 0; i < 27; ++i) {
-    frame.depth[i] = std::numeric_limits<float>::infinity();
-    frame.pointId[i] = Picture::kNoPoint;
+    picture.depth[i] = std::numeric_limits<float>::infinity();
+    picture.pointId[i] = Picture::kNoPoint;
   }
-  const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, PointSizes(1), scratch, pool);
-  EXPECT_EQ(frame.colour, before);
+  const std::vector<std::uint32_t> before = picture.colour;
+  eyeDomeLighting(picture, 1.0f, PointSizes(1), scratch, pool);
+  EXPECT_EQ(picture.colour, before);
 }
 
 TEST(EyeDomeLighting, DarkensOnlyWhatStandsBehindItsNeighbours) {
   const ThreadPool pool(1);
-  Picture frame = flatFrame(9, 5.0f);
-  for (std::size_t i = 0; i < frame.depth.size(); ++i)
-    if (i % 9 >= 5) frame.depth[i] = 6.0f;
-  const std::vector<std::uint32_t> before = frame.colour;
-  eyeDomeLighting(frame, 1.0f, PointSizes(1), scratch, pool);
-  for (std::size_t i = 0; i < frame.colour.size(); ++i) {
+  Picture picture = flatPicture(9, 5.0f);
+  for (std::size_t i = 0; i < picture.depth.size(); ++i)
+    if (i % 9 >= 5) picture.depth[i] = 6.0f;
+  const std::vector<std::uint32_t> before = picture.colour;
+  eyeDomeLighting(picture, 1.0f, PointSizes(1), scratch, pool);
+  for (std::size_t i = 0; i < picture.colour.size(); ++i) {
     if (i % 9 == 5)
-      EXPECT_LT(frame.colour[i] & 255u, before[i] & 255u);
+      EXPECT_LT(picture.colour[i] & 255u, before[i] & 255u);
     else
-      EXPECT_EQ(frame.colour[i], before[i]);
-    EXPECT_EQ(frame.colour[i] >> 24, 255u);
+      EXPECT_EQ(picture.colour[i], before[i]);
+    EXPECT_EQ(picture.colour[i] >> 24, 255u);
   }
 }
 
 TEST(EyeDomeLighting, DoesNotDependOnTheScaleOfTheScene) {
   const ThreadPool pool(1);
-  Picture small = flatFrame(5, 1.0f), large = flatFrame(5, 1024.0f);
+  Picture small = flatPicture(5, 1.0f), large = flatPicture(5, 1024.0f);
   small.depth[12] *= 1.125f;
   large.depth[12] *= 1.125f;
   eyeDomeLighting(small, 0.3f, PointSizes(1), scratch, pool);

@@ -37,11 +37,11 @@ TEST(Resolve, FindsThePointOfEveryId) {
   VisibilityBuffer buffer{static_cast<int>(list.pointCount), 1, {}};
   for (std::uint32_t id = 0; id < list.pointCount; ++id)
     buffer.pixels.push_back(packPixel(std::bit_cast<std::uint32_t>(1.0f), id));
-  Picture frame;
-  resolveFrame(list, View{}, {}, buffer, ThreadPool(2), frame);
+  Picture picture;
+  resolvePicture({list, View{}, {}}, {ThreadPool(2)}, buffer, picture);
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < list.items.size(); ++i)
-    for (std::uint32_t p = 0; p < list.items[i].pointCount; ++p, ++at) ASSERT_EQ(frame.colour[at], i << 16 | p);
+    for (std::uint32_t p = 0; p < list.items[i].pointCount; ++p, ++at) ASSERT_EQ(picture.colour[at], i << 16 | p);
 }
 
 TEST(Resolve, ColoursByTheModeThatIsAskedFor) {
@@ -52,12 +52,12 @@ TEST(Resolve, ColoursByTheModeThatIsAskedFor) {
   const RenderList list = test::makeList({node});
   const auto colours = [&](const DrawOptions& options) {
     VisibilityBuffer buffer{3, 1, {packPixel(0x3f800000u, 0), packPixel(0x3f800000u, 1), kEmptyPixel}};
-    Picture frame;
-    resolveFrame(list, View{}, options, buffer, ThreadPool(1), frame);
-    EXPECT_EQ(frame.pointId[2], Picture::kNoPoint);
-    EXPECT_EQ(frame.depth[2], std::numeric_limits<float>::infinity());
-    EXPECT_EQ(frame.colour[2], packColour(1, 2, 3));
-    return std::pair{frame.colour[0], frame.colour[1]};
+    Picture picture;
+    resolvePicture({list, View{}, options}, {ThreadPool(1)}, buffer, picture);
+    EXPECT_EQ(picture.pointId[2], Picture::kNoPoint);
+    EXPECT_EQ(picture.depth[2], std::numeric_limits<float>::infinity());
+    EXPECT_EQ(picture.colour[2], packColour(1, 2, 3));
+    return std::pair{picture.colour[0], picture.colour[1]};
   };
   DrawOptions options;
   options.background = {1, 2, 3};

@@ -24,14 +24,14 @@ View aView(const RenderList& list, int size = 512) { return test::viewsAround(te
 Picture drawn(const RenderList& list, const View& view, const DrawOptions& options, int threads = 2) {
   RasterizerOptions some;
   some.threads = threads;
-  Picture frame;
-  createRasterizer(Backend::cpu, some, nullptr)->draw(list, view, options, frame);
-  return frame;
+  Picture picture;
+  createRasterizer(Backend::cpu, some, nullptr)->draw(list, view, options, picture);
+  return picture;
 }
 
 void expectOraclesPicture(const RenderList& list, const View& view, const DrawOptions& options) {
-  const Picture frame = drawn(list, view, options);
-  const test::Comparison result = test::compareToOracle(list, view, frame, options);
+  const Picture picture = drawn(list, view, options);
+  const test::Comparison result = test::compareToOracle(list, view, picture, options);
   EXPECT_GT(result.covered, 500u);
   EXPECT_GE(result.agreement(), 0.999) << result.different << " of " << result.covered << " pixels differ";
   EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
@@ -79,20 +79,20 @@ TEST(HighQualityShading, IsTheMeanColourOfThePointsWithinOnePerCentOfTheFront) {
   for (const View& view : test::viewsAround(test::boundsOf(list), 4, 256, 256)) {
     DrawOptions options;
     options.shading = Shading::highQuality;
-    const Picture frame = drawn(list, view, options);
-    std::vector<glm::dvec4> sums(frame.colour.size(), glm::dvec4(0.0));
+    const Picture picture = drawn(list, view, options);
+    std::vector<glm::dvec4> sums(picture.colour.size(), glm::dvec4(0.0));
     for (const Seen& point : allSeen(list, view)) {
-      if (point.depth > 1.01 * static_cast<double>(frame.depth[point.pixel])) continue;
+      if (point.depth > 1.01 * static_cast<double>(picture.depth[point.pixel])) continue;
       const std::uint32_t c = colourOf(list, point.id);
       sums[point.pixel] += glm::dvec4(c & 255u, c >> 8 & 255u, c >> 16 & 255u, 1.0);
     }
     std::size_t covered = 0, different = 0, blended = 0;
     for (std::size_t i = 0; i < sums.size(); ++i) {
-      if (frame.pointId[i] == Picture::kNoPoint) continue;
+      if (picture.pointId[i] == Picture::kNoPoint) continue;
       ++covered;
       blended += sums[i].w > 1.5;
       for (int channel = 0; channel < 3; ++channel)
-        if (std::abs(sums[i][channel] / sums[i].w - (frame.colour[i] >> (8 * channel) & 255u)) > 0.51) {
+        if (std::abs(sums[i][channel] / sums[i].w - (picture.colour[i] >> (8 * channel) & 255u)) > 0.51) {
           ++different;
           break;
         }
@@ -124,10 +124,10 @@ TEST(HighQualityShading, GivesLargePointsTheColourOfThePixelTheyComeFrom) {
   DrawOptions options;
   options.shading = Shading::highQuality;
   options.pointSize = 5;
-  const Picture frame = drawn(list, view, options);
+  const Picture picture = drawn(list, view, options);
   std::map<std::uint32_t, int> colours;
-  for (std::size_t i = 0; i < frame.colour.size(); ++i)
-    if (frame.pointId[i] != Picture::kNoPoint) ++colours[frame.colour[i]];
+  for (std::size_t i = 0; i < picture.colour.size(); ++i)
+    if (picture.pointId[i] != Picture::kNoPoint) ++colours[picture.colour[i]];
   ASSERT_EQ(colours.size(), 1u);
   EXPECT_EQ(colours.begin()->second, 25);
 }
@@ -148,10 +148,10 @@ TEST(Overdraw, CountsThePointsOfEveryPixel) {
   for (std::size_t i = 0; i < counts.size(); ++i) different += counts[i] != target.buffer.counts[i];
   EXPECT_LE(different, counts.size() / 200);
   EXPECT_GT(*std::max_element(counts.begin(), counts.end()), 5u);
-  const Picture frame = drawn(list, view, options);
+  const Picture picture = drawn(list, view, options);
   const auto largest = static_cast<std::size_t>(
       std::max_element(target.buffer.counts.begin(), target.buffer.counts.end()) - target.buffer.counts.begin());
-  EXPECT_EQ(frame.colour[largest], heatColour(1.0));
+  EXPECT_EQ(picture.colour[largest], heatColour(1.0));
 }
 
 TEST(Clip, DrawsOnlyWhatIsInOneOfTheBoxesAndBeforeAllPlanes) {
@@ -214,10 +214,10 @@ TEST(Classes, AreLeftOutWhereTheyAreNotWanted) {
   for (const std::size_t wanted : {2u, 6u, 11u}) options.classes.set(wanted);
   for (const View& view : test::viewsAround(test::boundsOf(list), 4, 300, 300))
     expectOraclesPicture(list, view, options);
-  const Picture frame = drawn(list, aView(list), options);
+  const Picture picture = drawn(list, aView(list), options);
   std::uint32_t firstId = 0;
   for (const RenderItem& item : list.items) {
-    for (const std::uint32_t id : frame.pointId)
+    for (const std::uint32_t id : picture.pointId)
       if (id - firstId < item.pointCount) {
         EXPECT_TRUE(options.classes[item.node->classification[id - firstId]]);
       }
@@ -240,9 +240,9 @@ TEST(Gaze, LeavesOutNodesThatAreSmallAndFarFromIt) {
   planBatches(list, view, options, target.plan);
   clearTarget(target, pool);
   drawBatches({&target, 1}, options, pool);
-  Picture frame;
-  for (const PackedPixel pixel : target.buffer.pixels) frame.pointId.push_back(pixelId(pixel));
-  const test::Comparison result = test::compareToOracle(list, view, frame, options);
+  Picture picture;
+  for (const PackedPixel pixel : target.buffer.pixels) picture.pointId.push_back(pixelId(pixel));
+  const test::Comparison result = test::compareToOracle(list, view, picture, options);
   EXPECT_GE(result.agreement(), 0.999);
   EXPECT_EQ(result.unexplained, 0u) << result.firstUnexplained;
   options.gaze = {true, {0.2f, 0.5f}, 0.0f, 0.0f};
@@ -265,15 +265,15 @@ TEST(SeveralViews, AreTheSameAsOneAfterTheOther) {
       options.pointSize = mode == 2 ? 2 : 1;
       if (mode == 2) options.clip.boxes = {{kUtm - 40.0, kUtm + 60.0}};
       const View views[] = {left, right, third};
-      Picture frames[3];
-      const DrawStats stats = createRasterizer(Backend::cpu, {}, nullptr)->drawViews(list, views, options, frames);
+      Picture pictures[3];
+      const DrawStats stats = createRasterizer(Backend::cpu, {}, nullptr)->drawViews(list, views, options, pictures);
       std::uint64_t points = 0;
       for (int v = 0; v < 3; ++v) {
         Picture alone;
         points += createRasterizer(Backend::cpu, {}, nullptr)->draw(list, views[v], options, alone).pointsDrawn;
-        EXPECT_EQ(frames[v].pointId, alone.pointId);
-        EXPECT_EQ(frames[v].depth, alone.depth);
-        EXPECT_EQ(frames[v].colour, alone.colour);
+        EXPECT_EQ(pictures[v].pointId, alone.pointId);
+        EXPECT_EQ(pictures[v].depth, alone.depth);
+        EXPECT_EQ(pictures[v].colour, alone.colour);
       }
       EXPECT_EQ(stats.pointsDrawn, points);
     }
@@ -287,10 +287,10 @@ TEST(Background, MayRunFromOneColourAtTheTopToAnotherBelow) {
   View view;
   view.width = 3;
   view.height = 11;
-  const Picture frame = drawn({}, view, options);
-  EXPECT_EQ(frame.colour[0], packColour(10, 20, 30));
-  EXPECT_EQ(frame.colour[5 * 3], packColour(60, 120, 15));
-  EXPECT_EQ(frame.colour[10 * 3 + 2], packColour(110, 220, 0));
+  const Picture picture = drawn({}, view, options);
+  EXPECT_EQ(picture.colour[0], packColour(10, 20, 30));
+  EXPECT_EQ(picture.colour[5 * 3], packColour(60, 120, 15));
+  EXPECT_EQ(picture.colour[10 * 3 + 2], packColour(110, 220, 0));
 }
 
 TEST(Precision, IsShownAsItWasDrawn) {
@@ -300,14 +300,14 @@ TEST(Precision, IsShownAsItWasDrawn) {
   for (const View& view : test::viewsAround(test::boundsOf(list), 6, 200, 200)) {
     DrawPlan plan;
     planBatches(list, view, options, plan);
-    const Picture frame = drawn(list, view, options);
-    for (std::size_t i = 0; i < frame.colour.size(); i += 7) {
-      if (frame.pointId[i] == Picture::kNoPoint) continue;
+    const Picture picture = drawn(list, view, options);
+    for (std::size_t i = 0; i < picture.colour.size(); i += 7) {
+      if (picture.pointId[i] == Picture::kNoPoint) continue;
       const auto batch = std::find_if(plan.batches.begin(), plan.batches.end(), [&](const PlannedBatch& b) {
-        return frame.pointId[i] - b.firstId < b.pointCount;
+        return picture.pointId[i] - b.firstId < b.pointCount;
       });
       ASSERT_NE(batch, plan.batches.end());
-      ASSERT_EQ(frame.colour[i], precisionColour(static_cast<int>(batch->precision)));
+      ASSERT_EQ(picture.colour[i], precisionColour(static_cast<int>(batch->precision)));
     }
   }
 }
@@ -382,9 +382,9 @@ TEST(NearPlane, HoldsPointsThatLieOnIt) {
   view.target = {0.0, 1.0, 0.0};
   view.nearPlane = 0.5;
   view.width = view.height = 401;
-  const Picture frame = drawn(list, view, {});
+  const Picture picture = drawn(list, view, {});
   std::size_t onPlane = 0;
-  for (const float depth : frame.depth) {
+  for (const float depth : picture.depth) {
     EXPECT_GE(depth, 0.5f);
     onPlane += depth == 0.5f;
   }
