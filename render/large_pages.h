@@ -3,8 +3,8 @@
 
 namespace strata {
 
-/// Asks the system to back the whole 2 MiB blocks of [begin, begin + bytes) with large pages, which must not have been
-/// written yet. Nothing happens where the system has none.
+/// Asks the system for large pages for the whole 2 MiB blocks in [begin, begin + bytes). The memory should not have
+/// been written yet. Nothing happens where the system has no large pages.
 void adviseLargePages(void* begin, std::size_t bytes);
 
 }  // namespace strata

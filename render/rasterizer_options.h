@@ -3,10 +3,10 @@
 
 namespace strata {
 
-/// Limits on what a rasterizer may use.
+/// The memory and the threads that a rasterizer may use.
 struct RasterizerOptions {
-  int threads = 0;                                  ///< cpu; 0 = all cores
-  std::uint64_t gpuBytes = std::uint64_t{1} << 30;  ///< cap on node data held by the GPU
+  int threads = 0;                                  ///< 0: one per core
+  std::uint64_t gpuBytes = std::uint64_t{1} << 30;  ///< cap on node data in GPU memory
   std::uint64_t uploadBytesPerFrame = std::uint64_t{64} << 20;
 };
 

@@ -3,7 +3,7 @@
 
 namespace strata {
 
-/// Milliseconds since it was made or last asked.
+/// Measures wall time in laps: from construction to the first lapMs(), then from one lapMs() to the next.
 class Stopwatch {
  public:
   double lapMs() {

@@ -5,20 +5,22 @@
 
 namespace strata {
 
-/// A bounded set of worker threads (a TBB arena). The calling thread is one of them.
+/// A bounded set of worker threads (a TBB arena). The thread that calls is one of them. Several threads may share a
+/// pool.
 class ThreadPool {
  public:
-  /// `threads` 0 means all cores.
+  /// 0 threads means one per core.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
   ThreadPool& operator=(const ThreadPool&) = delete;
 
   int threads() const;
-  /// Calls body(begin, end) over parts of [0, count) of at most `grain` each; returns when all are done.
+  /// Calls body(begin, end) for ranges that together cover [0, count), each at most `grain` long. Returns when all
+  /// calls have returned.
   void parallelFor(std::size_t count, std::size_t grain,
                    const std::function<void(std::size_t, std::size_t)>& body) const;
-  /// The same with body(begin, end, slot): a slot in [0, threads()) is used by one thread at a time.
+  /// The same with body(begin, end, slot). Two calls that run at the same time have different slots in [0, threads()).
   void parallelForSlots(std::size_t count, std::size_t grain,
                         const std::function<void(std::size_t, std::size_t, std::size_t)>& body) const;
 

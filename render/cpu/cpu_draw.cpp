@@ -12,9 +12,11 @@ namespace {
 
 constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 16;
 constexpr std::size_t kMostViews = 2;
-constexpr std::size_t kPointsAPixelToOwn = 2;  ///< for each thread but the first; measured, docs/rasterizers.md
+/// Points per pixel, for each thread except the first, from which own pixels pay off; measured, see
+/// docs/rasterizers.md.
+constexpr std::size_t kPointsAPixelToOwn = 2;
 
-/// A batch of the list and how the views want it; null where one does not.
+/// A batch of the list, as each view has planned it; null where a view does not draw it in this task.
 struct Task {
   const PlannedBatch* batches[kMostViews] = {};
   int firstView = 0, views = 1;
@@ -22,7 +24,8 @@ struct Task {
   const PlannedBatch& any() const { return *batches[firstView]; }
 };
 
-/// The batches of one or two plans in list order, those of equal precision together.
+/// The batches of one or two plans in list order. A batch that both plans draw with the same precision is one task.
+/// Both plans ascend by id, so this is a merge.
 std::vector<Task> makeTasks(std::span<const CpuTarget> targets) {
   std::vector<Task> tasks;
   std::size_t next[kMostViews] = {};
@@ -59,13 +62,13 @@ KernelView kernelView(const CpuTarget& target, const PlannedBatch& batch) {
   return view;
 }
 
-/// DrawOptions::classes as the kernel takes it.
+/// DrawOptions::classes in the form that the kernel takes: one word per point.
 class ClassFilter {
  public:
   explicit ClassFilter(const DrawOptions& options) : all_(options.classes.all()) {
     for (std::size_t c = 0; c < words_.size(); ++c) words_[c] = options.classes[c] ? ~std::uint32_t{0} : 0u;
   }
-  /// Null where every point is drawn.
+  /// Fills `words` and returns it; null where every point is drawn.
   const std::uint32_t* keep(const NodeData& node, std::size_t first, std::size_t count, std::uint32_t* words) const {
     if (all_ || node.classification.empty()) return nullptr;
     for (std::size_t i = 0; i < count; ++i) words[i] = words_[node.classification[first + i]];
@@ -86,7 +89,8 @@ struct Draw {
   ClassFilter filter;
 };
 
-/// Projects a task's batch block by block against pixelsOf(view) and hands each view's points to use(view, block).
+/// Projects the batch of a task block by block, with depth tests against pixelsOf(view), and calls use(view, block)
+/// with the points that each view keeps.
 template <typename Pixels, typename Use>
 void forEachBlock(const Draw& draw, const Task& task, Wanted wanted, const Pixels& pixelsOf, const Use& use) {
   KernelView views[kMostViews];
@@ -111,7 +115,8 @@ void forEachBlock(const Draw& draw, const Task& task, Wanted wanted, const Pixel
   }
 }
 
-/// The minimum does not depend on the order of the threads, so a frame repeats bit for bit.
+/// Lowers a pixel that several threads share. A minimum does not depend on the order of the threads, so a picture
+/// repeats bit for bit.
 void lowerShared(PackedPixel& target, PackedPixel value) {
   std::atomic_ref<PackedPixel> pixel(target);
   PackedPixel seen = pixel.load(std::memory_order_relaxed);
@@ -137,7 +142,8 @@ void fillPixels(std::vector<PackedPixel>& pixels, std::size_t count, const Threa
   });
 }
 
-/// True where the threads' own pixels, which must be merged, cost less than compare-and-swap for each point.
+/// True when pixels of their own, which must be merged afterwards, cost the threads less than a compare-and-swap for
+/// each point.
 bool ownPixelsPay(const CpuTarget& target, int threads) {
   return threads > 1 && target.plan.pointCount >
                             kPointsAPixelToOwn * target.buffer.pixels.size() * static_cast<std::size_t>(threads - 1);
@@ -184,7 +190,7 @@ void drawFront(const Draw& draw) {
     if (own) mergeOwnPixels(target, pool);
 }
 
-/// Sums the colours of the points near each pixel's front.
+/// Sums the colours of the points near each pixel's front, which is final by now.
 void blendNear(const Draw& draw) {
   const std::span<CpuTarget> targets = draw.targets;
   const std::vector<Task>& tasks = draw.tasks;

@@ -7,20 +7,20 @@
 
 namespace strata {
 
-/// One view of a frame while it is drawn.
+/// One view while it is drawn.
 struct CpuTarget {
   DrawPlan plan;
   VisibilityBuffer buffer;
-  /// For threads but the first: pixels of their own, so that none needs a lock; empty between frames.
+  /// Pixels of their own for all threads but the first, so that none needs a lock. They are empty between draws.
   std::vector<std::vector<PackedPixel>> privatePixels;
 };
 
-/// Makes the buffer as large as the view and empty.
+/// Gives the buffer the size of the plan's view, all pixels empty.
 void clearTarget(CpuTarget& target, const ThreadPool& pool);
 
-/// Draws the planned batches into every target, at most two: each point is read once for both where both want it with
-/// the same precision. Fills the sums and counts that `options` ask for. The result does not depend on the number of
-/// threads.
+/// Draws the planned batches into the targets, of which there are at most two. Where both want a point with the same
+/// precision, it is read once for both. Fills the sums and counts that `options` ask for. The result does not depend on
+/// the number of threads.
 void drawBatches(std::span<CpuTarget> targets, const DrawOptions& options, const ThreadPool& pool);
 
 }  // namespace strata

@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-// Vectors are members of structs below, which the types without a fixed size cannot be.
+// Structs below have vectors as members, which is impossible for the vector types without a fixed size.
 #define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/cpu_kernel.cpp"  // compiled once for each instruction set
@@ -25,21 +25,23 @@ using Ints = hn::Vec<decltype(kInt)>;
 using Words = hn::Vec<decltype(kWord)>;
 using Mask = hn::Mask<decltype(kFloat)>;
 
-/// How coordinates become grid steps. Floats: 10 or 20 bits and an offset that a float holds, so that one fused
-/// multiply-add rounds once, as converting the integer D does. Integers: everything else.
+/// How coordinates become d, the grid steps as floats. With 10 or 20 bits and an offset that a float holds exactly, one
+/// fused multiply-add of floats rounds once, and so gives the same bits as converting the integer D. Everything else is
+/// computed in integers.
 enum class Steps { floats, integers };
 
-/// Where one vector of points is read from.
+/// The memory that one vector of points is read from.
 struct VectorSource {
   const std::uint32_t* planes[3];
   const std::uint32_t* keep;
 };
 
+/// Coordinates X of one vector of points.
 struct Cells {
   Words x, y, z;
 };
 
-/// Appends the ten bits an axis of one plane's words.
+/// Appends the ten bits per axis that one plane's words hold.
 HWY_INLINE Cells append(Cells cells, Words word) {
   const Words mask = hn::Set(kWord, 1023u);
   return {hn::Or(hn::ShiftLeft<10>(cells.x), hn::And(word, mask)),
@@ -47,7 +49,8 @@ HWY_INLINE Cells append(Cells cells, Words word) {
           hn::Or(hn::ShiftLeft<10>(cells.z), hn::And(hn::ShiftRight<20>(word), mask))};
 }
 
-/// The coordinates of one vector of points, the same for every view. One plane is left where it stands in its word.
+/// The coordinates of one vector of points, which all views share. If there is only one plane, y and z stay at their
+/// bits 10 and 20 of the word; the shift of the Projector makes up for that.
 template <int kPlanes, Steps kSteps>
 struct Coordinates {
   static constexpr int kStands[3] = {0, kPlanes == 1 ? 10 : 0, kPlanes == 1 ? 20 : 0};
@@ -83,7 +86,7 @@ struct Row {
   Floats x, y, z, base;
 };
 
-/// The arithmetic of batch_plan.h over one vector of points at a time.
+/// The arithmetic of grid_transform.h for one view, on one vector of points at a time.
 template <int kPlanes, Steps kSteps>
 class Projector {
  public:
@@ -104,7 +107,7 @@ class Projector {
     }
   }
 
-  /// Appends the wanted points of one vector to `out`.
+  /// Appends the points of one vector that are wanted to `out`.
   template <Wanted kWanted>
   HWY_INLINE void project(const Coordinates<kPlanes, kSteps>& c, Mask lanes, std::uint32_t firstId,
                           ProjectedBlock& out) const {
@@ -119,6 +122,7 @@ class Projector {
     if (!view_.inside && hn::AllFalse(kFloat, wanted)) return;
 
     Ints pixel = hn::Add(hn::Mul(hn::ConvertTo(kInt, row), width_), hn::Sub(hn::ConvertTo(kInt, column), corner_));
+    // Lanes outside the image must not be gathered, so they read pixel 0.
     if constexpr (kWanted != Wanted::all) {
       if (!view_.inside) pixel = hn::IfThenElseZero(hn::RebindMask(kInt, wanted), pixel);
       const Floats front = frontDepth(pixel);
@@ -128,7 +132,7 @@ class Projector {
     }
     const Words id = hn::Iota(kWord, firstId);
     const auto keep = hn::RebindMask(kWord, wanted);
-    // Compress and store, not CompressStore: compressing into memory is microcode on Zen 4, many times slower.
+    // Not CompressStore: compressing straight into memory is microcode on Zen 4, and many times slower.
     hn::StoreU(hn::Compress(hn::BitCast(kWord, pixel), keep), kWord, out.pixel + out.count);
     hn::StoreU(hn::Compress(hn::BitCast(kWord, depth), keep), kWord, out.depthBits + out.count);
     hn::StoreU(hn::Compress(id, keep), kWord, out.id + out.count);
@@ -168,6 +172,7 @@ class Projector {
     return kept;
   }
 
+  /// The depths in the upper halves of 64-bit pixels.
   HWY_INLINE Floats frontDepth(Ints pixel) const {
     constexpr int kHigh = std::endian::native == std::endian::little ? 1 : 0;
     const auto* words = reinterpret_cast<const float*>(view_.pixels);
@@ -176,7 +181,7 @@ class Projector {
 
   Row x_, y_, depth_;
   Floats halfWidth_, halfHeight_;
-  Ints width_, corner_;  ///< columns of the image; index that the picture's first pixel would have, negated
+  Ints width_, corner_;  ///< columns of the image; index of its first pixel, counted from the picture's origin
   Floats scale_[3], offset_[3];
   int shift_[3];
   const KernelView& view_;
@@ -198,6 +203,7 @@ class BlockProjector {
       project(from, all, static_cast<std::uint32_t>(points.firstId + at));
     }
     if (at == points.count) return;
+    // The last points do not fill a vector. They are copied, because reading beyond the planes may fault.
     std::uint32_t tail[4][HWY_MAX_BYTES / sizeof(std::uint32_t)] = {};
     for (int p = 0; p < kPlanes; ++p) std::copy(points.planes[p] + at, points.planes[p] + points.count, tail[p]);
     if (points.keep != nullptr) std::copy(points.keep + at, points.keep + points.count, tail[3]);

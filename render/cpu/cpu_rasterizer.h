@@ -6,8 +6,9 @@
 
 namespace strata {
 
-/// Draws on the CPU with no GL at all: threads over batches, vectors over the points of a batch, and a framebuffer
-/// of packed depth and id that each thread lowers by compare-and-swap after an early depth test (Schütz 2022, 3.2).
+/// Makes a rasterizer that needs no OpenGL. Threads share the batches, and vector instructions work on the points of a
+/// batch. After an early depth test, each thread lowers the packed depth and id of a pixel by compare-and-swap (Schütz
+/// 2022, 3.2).
 std::unique_ptr<Rasterizer> createCpuRasterizer(const RasterizerOptions& options);
 
 }  // namespace strata

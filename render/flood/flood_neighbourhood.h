@@ -6,15 +6,16 @@
 namespace strata {
 
 inline constexpr int kFloodLayers = 4;      ///< Farias 2014, 4.2
-inline constexpr int kFloodNeighbours = 8;  ///< the eighths of a circle; of the closest, the first four
+inline constexpr int kFloodNeighbours = 8;  ///< one per eighth of the circle; without sectors only four are used
 
-/// Up to four seeds of one pixel of the half picture; kNoPixel behind the last.
+/// The closest seeds of up to four layers, for one pixel of the half picture; kNoPixel behind the last.
 using FloodLayers = std::array<FloodPixel, kFloodLayers>;
 
-/// The neighbours of a seed: with FloodSettings::sectors by floodSector(), else by distance. kNoPixel: there is none.
+/// The neighbours of a seed, in the order of floodSector() with FloodSettings::sectors, else by distance. kNoPixel
+/// means that there is none.
 using FloodNeighbours = std::array<FloodPixel, kFloodNeighbours>;
 
-/// Which eighth of the circle around the origin (x, y) lies in, 0 to 7; y points down. Not for (0, 0).
+/// The eighth of the circle around the origin that (x, y) lies in, 0 to 7. y points down, and (x, y) is not (0, 0).
 inline int floodSector(float x, float y) {
   const bool left = x < 0.0f, up = y < 0.0f;
   const bool steep = (left ? -x : x) < (up ? -y : y);

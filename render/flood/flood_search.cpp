@@ -15,8 +15,8 @@ constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
 float distance2(const glm::vec3& a, const glm::vec3& b) { return glm::dot(b - a, b - a); }
 
-/// Of each square of kFloodTile x kFloodTile pixels the largest reach, in pixels, of the seeds that reach into it; no
-/// more than `farthest`, which is as far as all jumps together go.
+/// Knows for each square of kFloodTile x kFloodTile pixels the largest reach, in pixels, of the seeds that reach into
+/// it. Reaches end at `farthest`, which is as far as all jumps together go.
 class NearbyReaches {
  public:
   NearbyReaches(const FloodSeeds& seeds, float farthest)
@@ -52,7 +52,7 @@ class NearbyReaches {
   std::vector<float> reach_;
 };
 
-/// The two halves of sameLayer(): most pairs end with the first.
+// The two halves of sameLayer(). The first one rules most pairs out.
 bool inReach(const FloodPoint& a, const FloodPoint& b, float distance2) {
   const float reach = std::min(a.reach, b.reach);
   return distance2 <= reach * reach;
@@ -70,7 +70,8 @@ bool alike(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSetti
          off < settings.continuity * std::min(seeds.points[seeds.index(a)].reach, seeds.points[seeds.index(b)].reach);
 }
 
-/// Over the distance of two points whose pixels are one apart, what it is at least where the first is `metres` away.
+/// The least distance of two points whose pixels are one pixel apart, as a share of the size of a pixel at the depth of
+/// the first. In perspective, the second point may be nearer to the eye along an oblique line of sight.
 float leastShare(const FloodSeeds& seeds) {
   if (!seeds.lens.perspective) return 1.0f;
   const auto farther = [](float middle, int side) { return std::max(middle, static_cast<float>(2 * side) - middle); };
@@ -79,7 +80,7 @@ float leastShare(const FloodSeeds& seeds) {
   return 1.0f / std::sqrt(1.0f + x * x + y * y);
 }
 
-/// Candidates of one seed, and the room that keepClose() wants.
+/// The candidates of one seed, with the room behind them that keepClose() needs.
 struct Candidates {
   static constexpr std::size_t kMost = 8 * (kFloodLayers + kFloodNeighbours);
 
@@ -93,12 +94,13 @@ struct Candidates {
   std::size_t count = 0;
 };
 
-/// The neighbours of one seed while candidates come in.
+/// Searches the neighbours of one seed. `found` holds those so far.
 class NeighbourList {
  public:
   NeighbourList(const FloodSeeds& seeds, const FloodSettings& settings, float leastShare, FloodPixel seed,
                 FloodNeighbours& found)
       : seeds_(seeds), settings_(settings), found_(found) {
+    // A little less than the bound, so that rounding rules no candidate out.
     const float least = 0.999f * leastShare * seeds.lens.metres(seeds.points[seeds.index(seed)].depth);
     bounds_.seed = seed;
     bounds_.leastPerPixel2 = least * least;
@@ -149,7 +151,7 @@ class NeighbourList {
   NeighbourBounds bounds_;
 };
 
-/// Calls visit(seed, its index) for all of them, rows at once on several threads.
+/// Calls visit(seed, index) for all seeds, on several threads.
 template <typename Visit>
 void forEachSeed(const FloodSeeds& seeds, const ThreadPool& pool, Visit visit) {
   const auto width = static_cast<std::size_t>(seeds.width);
@@ -234,7 +236,7 @@ std::vector<FloodNeighbours> findNeighbours(const FloodSeeds& seeds, const std::
     });
     from.swap(to);
   }
-  // Not in the paper: what the jumps missed is mostly among the neighbours' neighbours.
+  // A step that the paper does not have: most of what the jumps missed is among the neighbours' neighbours.
   forEachSeed(seeds, pool, [&](FloodPixel seed, std::size_t i) {
     to[i] = from[i];
     Candidates candidates;

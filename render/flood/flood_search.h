@@ -6,17 +6,19 @@
 
 namespace strata {
 
-/// Whether two seeds are of one surface (Farias 2014, 4.2): closer than the smaller of their reaches and, where both
-/// have normals, these alike and neither point far from the other's plane. The same for (a, b) and (b, a).
+/// True when two seeds belong to one surface (Farias 2014, 4.2): they are closer than the smaller of their reaches and,
+/// where both have normals, the normals are alike and neither point lies far off the other's plane. The order of the
+/// two makes no difference.
 bool sameLayer(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodSettings& settings);
 
-/// The second step (4.2): for each pixel of the half picture the seeds of up to four layers that are closest to it in
-/// the picture, but within their reach, found by jumps to the eight sides of settings.firstStep and its halves; those
-/// that are longer than any reach nearby are spared. The same for any number of threads.
+/// The second step (4.2) finds, for each pixel of the half picture, the seeds of up to four layers that are closest to
+/// it in the picture and have it in their reach. It jumps to the eight sides, by settings.firstStep pixels and then by
+/// halves of that; jumps that are longer than any reach nearby are skipped. The result does not depend on the number of
+/// threads.
 std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings& settings, const ThreadPool& pool);
 
-/// The third step (4.3): for each seed, by index(), the closest points, in metres, among the layers that its jumps meet
-/// and the neighbours of the seeds there. Jumps longer than its reach are spared.
+/// The third step (4.3) finds, for each seed by index(), the closest points in metres among the layers that its jumps
+/// meet and the neighbours of the seeds there. Jumps that are longer than its reach are skipped.
 std::vector<FloodNeighbours> findNeighbours(const FloodSeeds& seeds, const std::vector<FloodLayers>& layers,
                                             const FloodSettings& settings, const ThreadPool& pool);
 

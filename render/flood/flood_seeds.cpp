@@ -19,7 +19,7 @@ glm::vec3 unpackNormal(std::uint32_t packed) {
   return length > 0.0f ? normal / length : glm::vec3(0.0f);
 }
 
-/// The pixel of the nearest point in columns 2x, 2x + 1 of rows 2y, 2y + 1; of equal ones the first.
+/// The pixel of the nearest point in columns 2x and 2x + 1 of rows 2y and 2y + 1; of equally near ones the first.
 FloodPixel nearestOfFour(const Picture& picture, int x, int y) {
   FloodPixel nearest = kNoPixel;
   float depth = 0.0f;
@@ -49,7 +49,7 @@ glm::vec3 unpackFloodNormal(std::uint32_t packed) {
 
 FloodLens floodLens(const View& view) {
   View whole = wholePicture(view);
-  whole.nearPlane = 0.0;  // which would bound the depth below
+  whole.nearPlane = 0.0;  // pixelsAt() takes no depth in front of it
   return {!view.orthographic, static_cast<float>(1.0 / pixelsAt(whole, 1.0, 1.0)),
           0.5f * static_cast<float>(whole.width) - static_cast<float>(view.tile.left),
           0.5f * static_cast<float>(whole.height) - static_cast<float>(view.tile.top)};
@@ -107,7 +107,7 @@ FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSet
                                 static_cast<std::size_t>(pixelColumn(seed));
       const PointLocation location = finder.find(picture.pointId[pixel]);
       const float depth = picture.depth[pixel];
-      // The seeds of neighbouring pixels are next to each other, however near the points of the scan lie.
+      // Seeds in neighbouring pixels must reach each other, however fine the scan is.
       const float least = settings.sectors ? kFloodNextPixels * out.lens.metres(depth) : 0.0f;
       out.points[i] = {depth, std::max(reaches[location.item], least)};
       if (!normals || location.node->normal.empty()) continue;

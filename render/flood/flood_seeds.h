@@ -9,25 +9,28 @@
 
 namespace strata {
 
-/// Between neighbours whose seeds are next to each other: less can only be the picture's pixels.
+/// Pixels of the picture. Two seeds in neighbouring pixels of the half picture may lie so far apart on one surface.
 inline constexpr float kFloodNextPixels = 4.0f;
 
-/// How holes are filled; the defaults are what DrawOptions::jumpFlood does. faithfulFlood() is the paper's way.
+/// How holes are filled. Everybody draws with the defaults. tests/bench/fill_quality.cpp measures what each deviation
+/// from the paper brings, so the kernels keep the paper's way next to ours.
 struct FloodSettings {
   float reachSpacings = 4.0f;   ///< largest distance of two points of a layer, in spacings of their nodes
-  float reachMetres = 0.0f;     ///< ... or the same for all points, where it is more than 0 (Farias 2014, 4.2)
-  float angle = 0.5f;           ///< least |cosine| between the normals of a layer
-  float continuity = 0.5f;      ///< farthest off the other's plane, a share of the largest distance
-  int firstStep = 64;           ///< pixels of the seeds' picture: the longest jump
+  float reachMetres = 0.0f;     ///< if more than 0: that distance for all points (Farias 2014, 4.2)
+  float angle = 0.5f;           ///< least |cosine| between two normals of a layer
+  float continuity = 0.5f;      ///< farthest off each other's plane, as a share of the largest distance
+  int firstStep = 64;           ///< longest jump, pixels of the half picture
   float relativeRadius = 6.0f;  ///< largest radius, in distances of the closest neighbour
-  bool sectors = true;          ///< the closest neighbour in each eighth of the circle; else the 4 closest of all
-  bool estimateNormals = true;  ///< where points have none: the plane through the neighbours; else they face the eye
-  bool useNormals = true;       ///< of the scan, where it has them
-  bool ellipses = true;         ///< as the neighbours lie; else circles
-  bool keepFront = true;        ///< what no splat hides keeps its colour; else all is blended
+  bool sectors = true;          ///< take the closest neighbour in each eighth of the circle; else the 4 closest
+  bool estimateNormals =
+      true;  ///< points without a normal get that of the plane through their neighbours; else they face the eye
+  bool useNormals = true;  ///< take the scan's normals, where it has them
+  bool ellipses = true;    ///< splats are ellipses that follow the neighbours; else circles
+  bool keepFront = true;   ///< points that no splat hides keep their colour; else all are blended
 };
 
-/// A pixel of the whole picture as x | y << 16: what seeds are called by. Smaller is higher up, then farther left.
+/// A pixel of the whole picture as x | y << 16, which identifies a seed. Smaller values lie higher up, then farther
+/// left.
 using FloodPixel = std::uint32_t;
 inline constexpr FloodPixel kNoPixel = 0xffffffffu;
 inline constexpr int kFloodLargestSide = 0x7ffe;  ///< pixels; larger pictures stay as they are
@@ -35,13 +38,13 @@ constexpr FloodPixel floodPixel(std::uint32_t x, std::uint32_t y) { return y << 
 constexpr int pixelColumn(FloodPixel pixel) { return static_cast<int>(pixel & 0xffffu); }
 constexpr int pixelRow(FloodPixel pixel) { return static_cast<int>(pixel >> 16); }
 
-/// From pixels of the whole picture and depths to metres from the eye: to the right, up, ahead.
+/// Turns pixels of the whole picture and depths into positions relative to the eye: metres to the right, up and ahead.
 struct FloodLens {
   bool perspective = true;
-  float perPixel = 1.0f;  ///< metres, at depth 1 or at any
-  float middleX = 0.0f, middleY = 0.0f;
+  float perPixel = 1.0f;                 ///< metres that a pixel covers at depth 1 (perspective) or at any depth
+  float middleX = 0.0f, middleY = 0.0f;  ///< where the view's axis meets the picture, pixels
 
-  float metres(float depth) const { return perPixel * (perspective ? depth : 1.0f); }  ///< that a pixel covers
+  float metres(float depth) const { return perPixel * (perspective ? depth : 1.0f); }  ///< size of a pixel at `depth`
   glm::vec3 position(FloodPixel pixel, float depth) const {
     const float size = metres(depth);
     return {(static_cast<float>(pixelColumn(pixel)) + 0.5f - middleX) * size,
@@ -50,41 +53,46 @@ struct FloodLens {
 };
 FloodLens floodLens(const View& view);
 
-/// What of the point that a pixel of the half picture shows.
+/// The point that a pixel of the half picture shows.
 struct FloodPoint {
   float depth;
-  float reach;  ///< metres; largest distance of a neighbour
+  float reach;  ///< largest distance of a neighbour, metres
 };
 
-/// A unit vector as x | y << 10 | z << 20, each 512 + 511 times the coordinate; 0 for the zero vector. And back.
+/// Packs a unit vector as x | y << 10 | z << 20, where each part is 512 + 511 times the coordinate; 0 for the zero
+/// vector.
 std::uint32_t packFloodNormal(const glm::vec3& normal);
 glm::vec3 unpackFloodNormal(std::uint32_t packed);
 
-/// The first of the four steps (Farias 2014, 4.1): the nearest point of each 2 x 2 pixels, in the middle of its pixel.
+/// The result of the first of the four steps (Farias 2014, 4.1): the half picture, each of whose pixels has as its seed
+/// the nearest point of 2 x 2 pixels of the whole picture. A seed lies in the middle of its pixel of the whole picture.
 struct FloodSeeds {
-  int width = 0, height = 0;           ///< of the half picture
-  FloodLens lens;                      ///< of the whole one
-  std::vector<FloodPixel> at;          ///< for each pixel of the half picture where its seed is; kNoPixel: it has none
-  std::vector<FloodPoint> points;      ///< by index()
-  std::vector<std::uint32_t> normals;  ///< likewise, see packFloodNormal(), as positions are; 0: not known. Or empty
+  int width = 0, height = 0;       ///< of the half picture
+  FloodLens lens;                  ///< of the whole picture
+  std::vector<FloodPixel> at;      ///< by index(): the seed's pixel of the whole picture; kNoPixel: no seed
+  std::vector<FloodPoint> points;  ///< by index()
+  std::vector<std::uint32_t>
+      normals;  ///< by index(), in the axes of FloodLens, packed; 0: not known. Empty where none is known
 
+  /// The index of the half picture's pixel that `seed` belongs to.
   std::size_t index(FloodPixel seed) const {
     return static_cast<std::size_t>(seed >> 17) * static_cast<std::size_t>(width) + ((seed & 0xffffu) >> 1);
   }
   glm::vec3 position(FloodPixel seed) const { return lens.position(seed, points[index(seed)].depth); }
-  /// Largest distance of a neighbour, in pixels of the half picture.
+  /// The largest distance of a neighbour, in pixels of the half picture.
   float reachPx(std::size_t i) const { return 0.5f * points[i].reach / lens.metres(points[i].depth); }
 };
 
-/// `picture` was drawn from the list, seen by `view`.
+/// Collects the seeds of `picture`, which was drawn from `list` as seen by `view`. A picture larger than
+/// kFloodLargestSide has none.
 FloodSeeds collectSeeds(const RenderList& list, const View& view, const FloodSettings& settings, const Picture& picture,
                         const ThreadPool& pool);
 
-/// Metres between the first `drawn` points of a node: its own spacing, or that of points spread evenly over the two
-/// longer sides of its box where it is not known; more where not all are drawn.
+/// The distance between neighbours among the first `drawn` points of a node, metres. It follows from the node's
+/// spacing, or, where that is not known, from points spread evenly over the two longer sides of its box.
 float drawnSpacing(const NodeData& node, std::uint32_t drawn);
 
-/// For each item of the list the largest distance of a neighbour of its points.
+/// The largest distance of a neighbour for the points of each item of the list, metres.
 std::vector<float> floodReaches(const RenderList& list, const FloodSettings& settings);
 
 }  // namespace strata

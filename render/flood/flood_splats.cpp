@@ -14,7 +14,8 @@ constexpr std::size_t kRowsAtOnce = 8;
 constexpr int kStripRows = 16;
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
-/// The direction that a symmetric matrix of rank 2 at most, up to rounding, maps to nothing; 0 where it maps two.
+/// The direction that a symmetric matrix, whose rank is 2 at most up to rounding, maps to zero. Where the rank is lower
+/// there is no single one, and the result is 0.
 glm::vec3 kernelOf(const glm::mat3& m) {
   const glm::vec3 products[3] = {glm::cross(m[0], m[1]), glm::cross(m[0], m[2]), glm::cross(m[1], m[2])};
   glm::vec3 longest(0.0f);
@@ -27,8 +28,8 @@ glm::vec3 kernelOf(const glm::mat3& m) {
   return length2 > 1e-20f ? longest / std::sqrt(length2) : glm::vec3(0.0f);
 }
 
-/// The falling eigenvalues of a symmetric matrix whose trace is 1 (the roots of its characteristic polynomial, by the
-/// cosine of a third of an angle).
+/// The eigenvalues of a symmetric matrix whose trace is 1, largest first: the roots of its characteristic polynomial,
+/// by the trigonometric formula.
 glm::vec3 eigenvalues(const glm::mat3& m) {
   const glm::vec3 diagonal = glm::vec3(m[0][0], m[1][1], m[2][2]) - 1.0f / 3.0f;
   const float beside = m[0][1] * m[0][1] + m[0][2] * m[0][2] + m[1][2] * m[1][2];
@@ -41,10 +42,10 @@ glm::vec3 eigenvalues(const glm::mat3& m) {
   return {first, 1.0f - first - third, third};
 }
 
-/// The offsets of a seed's neighbours.
+/// The neighbours of a seed, as offsets from it.
 struct Around {
   glm::vec3 offset[kFloodNeighbours];
-  float distance[kFloodNeighbours];  ///< rising
+  float distance[kFloodNeighbours];  ///< ascending; not in the order of `offset`
   int count = 0;
   std::uint32_t open = 0;  ///< sectors without a neighbour
 };
@@ -68,7 +69,8 @@ Around lookAround(const FloodSeeds& seeds, const glm::vec3& position, const Floo
 
 float median(const float* sorted, int count) { return 0.5f * (sorted[(count - 1) / 2] + sorted[count / 2]); }
 
-/// Of the plane through the neighbours; around a line the one that faces the eye.
+/// The normal of the plane through the seed and its neighbours. Where these form a line, the plane around it that faces
+/// the eye most is taken.
 glm::vec3 planeNormal(const Around& around, const glm::vec3& toEye) {
   glm::mat3 moments(0.0f);
   for (int i = 0; i < around.count; ++i) moments += glm::outerProduct(around.offset[i], around.offset[i]);
@@ -86,7 +88,7 @@ glm::vec3 planeNormal(const Around& around, const glm::vec3& toEye) {
   return glm::length(facing) > 0.1f ? glm::normalize(facing) : toEye;
 }
 
-/// The axes of a splat in space: as long as the inverse of the radius along them.
+/// The axes of a splat in space. Each is as long as the inverse of the radius along it.
 struct Axes {
   glm::vec3 across, along;
   float radius;  ///< the longer one
@@ -106,7 +108,7 @@ Axes axesOf(const Around& around, const glm::vec3& normal, float radius, bool el
       vv += b * b;
     }
     const float middle = 0.5f * (uu + vv), half = 0.5f * (uu - vv), spread = std::sqrt(half * half + uv * uv);
-    // The ratio of the axes is the root of that of the moments; the area stays.
+    // The ratio of the axes is the square root of the ratio of the moments, and the area stays.
     const float least = (middle + spread) / (kFloodMostStretch * kFloodMostStretch);
     const float ratio = (middle + spread) / std::max(middle - spread, std::max(least, 1e-30f));
     if (ratio > kFloodRound * kFloodRound) {
@@ -124,7 +126,7 @@ class SplatMaker {
   SplatMaker(const FloodSeeds& seeds, const glm::ivec2& size, const FloodSettings& settings)
       : seeds_(seeds), lens_(seeds.lens), size_(size), settings_(settings) {}
 
-  /// False where there is none.
+  /// Shapes the splat of a seed. False where it gets none.
   bool make(FloodPixel seed, const FloodNeighbours& neighbours, FloodSplat& splat) const {
     const std::size_t index = seeds_.index(seed);
     const FloodPoint& point = seeds_.points[index];
@@ -153,7 +155,7 @@ class SplatMaker {
   }
 
  private:
-  /// Where the plane of the splat meets the ray of a pixel, as a function of the pixel.
+  /// Expresses where the plane of the splat meets the ray of a pixel as a function of the pixel; see FloodSplat.
   void project(const glm::vec3& centre, const glm::vec3& normal, const Axes& axes, FloodSplat& splat) const {
     const glm::vec2 perPixel(lens_.perPixel, -lens_.perPixel);
     const auto set = [perPixel](const glm::vec2& value, float& x, float& y) {
@@ -175,7 +177,7 @@ class SplatMaker {
     }
   }
 
-  /// False where it touches no pixel of the picture.
+  /// Sets the pixels that the splat may touch. False where it touches none of the picture.
   bool bound(const glm::vec3& centre, const glm::vec3& normal, FloodSplat& splat) const {
     const glm::vec3 reach = splat.radius * glm::sqrt(glm::max(1.0f - normal * normal, 0.0f));
     const float nearest = std::max(centre.z - reach.z, 0.2f * centre.z);
@@ -204,7 +206,7 @@ class SplatMaker {
   const FloodSettings& settings_;
 };
 
-/// Draws the splats of a strip of rows, in their order.
+/// Draws the splats of a strip of rows, in their order, so that sums of floats do not depend on the threads.
 class StripPainter {
  public:
   StripPainter(const std::vector<FloodSplat>& splats, const FloodSettings& settings, const Picture& source)
@@ -218,7 +220,7 @@ class StripPainter {
     from_.resize(stride_ * kStripRows);
   }
 
-  /// Returns how many pixels of rows [top, bottom) it filled.
+  /// Draws splats into rows [top, bottom), and returns how many pixels it filled.
   std::uint64_t paint(const std::vector<std::uint32_t>& indices, int top, int bottom, Picture& picture) {
     std::fill(limit_.begin(), limit_.end(), kFar);
     for (std::vector<float>* sums : {&red_, &green_, &blue_, &depth_, &weight_, &heaviest_})
@@ -238,7 +240,7 @@ class StripPainter {
     return static_cast<std::size_t>(pixelRow(pixel)) * width_ + static_cast<std::size_t>(pixelColumn(pixel));
   }
 
-  /// No splat counts where a point lies in front of the limit.
+  /// Lets no splat count in pixels whose point lies in front of the limit.
   void closeFullPixels(int top, int bottom) {
     for (int y = top; y < bottom; ++y) {
       const float* depth = &source_.depth[static_cast<std::size_t>(y) * width_];

@@ -6,15 +6,16 @@
 
 namespace strata {
 
-/// The fourth step's first half (Farias 2014, 4.4): the shape of each splat, from the median of the neighbours'
-/// distances. Left out are those without a radius, with one over the seed's reach or over relativeRadius times the
-/// closest neighbour's distance, and those that cover no more than their own pixel. `width` x `height`: the picture.
+/// The first half of the fourth step (Farias 2014, 4.4) shapes the splats. A radius is the median of the neighbours'
+/// distances. A seed gets no splat where the radius is unknown, exceeds the seed's reach or relativeRadius times the
+/// distance of the closest neighbour, or covers no more than the seed's own pixel. `size`: width and height of the
+/// picture.
 std::vector<FloodSplat> makeSplats(const FloodSeeds& seeds, const std::vector<FloodNeighbours>& neighbours,
                                    const glm::ivec2& size, const FloodSettings& settings, const ThreadPool& pool);
 
-/// Its second half: the splats' depths, then the blend, by weight exp(-d^2), of those at the front of each pixel, into
-/// the pixels that are empty or hidden by splats. A filled pixel's id is that of its heaviest splat. The same for any
-/// number of threads. Returns how many pixels were filled.
+/// The second half draws the depths of the splats, then blends those at the front of each pixel, by the weight
+/// exp(-d^2), into the pixels that are empty or hidden by splats. A filled pixel has the id of its heaviest splat. The
+/// result does not depend on the number of threads. Returns how many pixels were filled.
 std::uint64_t drawSplats(const std::vector<FloodSplat>& splats, const FloodSettings& settings, const ThreadPool& pool,
                          Picture& picture);
 

@@ -2,6 +2,6 @@
 
 namespace strata {
 
-inline constexpr int kFloodTile = 16;  ///< pixels of a row that are searched at once: a multiple of any vector's
+inline constexpr int kFloodTile = 16;  ///< pixels of a row that are searched at once, a multiple of every vector length
 
 }  // namespace strata

@@ -15,7 +15,7 @@
 namespace strata {
 namespace {
 
-constexpr unsigned kMostIndexBits = 22;  ///< beside the weight in FloodSum::heaviest
+constexpr unsigned kMostIndexBits = 22;  ///< bits of FloodSum::heaviest that the weight leaves
 
 shader::FloodParams paramsOf(const RenderList& list, const View& view, const FloodSettings& settings, bool normals,
                              const Picture& picture) {
@@ -79,7 +79,7 @@ std::string floodDefines(std::uint32_t groupSize) {
   return define("STRATA_GROUP_SIZE", std::to_string(groupSize)) + constants();
 }
 
-/// Programs and buffers.
+/// The programs and buffers, which are made for the first picture.
 class GlFlood::Work {
  public:
   Work(const GlFunctions& functions, std::uint32_t groupSize)
@@ -130,7 +130,7 @@ class GlFlood::Work {
 
   void send(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
             const Picture& picture) {
-    // The scan's normals are not on the GPU: the CPU looks them up for the pixels of the half picture.
+    // The scan's normals are not in GPU memory, so the CPU looks them up for the pixels of the half picture.
     const bool normals = settings.useNormals && std::any_of(list.items.begin(), list.items.end(), [](const auto& item) {
                            return !item.node->normal.empty();
                          });
@@ -189,7 +189,7 @@ class GlFlood::Work {
     dispatch(spreadProgram_, 0, params_.tileColumns, params_.tileRows);
   }
 
-  /// Reads the first of the pair; what it wrote is then the first.
+  /// Runs one round, which reads the first buffer of the pair and writes the second. Then swaps them.
   void round(const GlProgram& program, Pair& pair, int step) {
     pair[0]->bindStorage(STRATA_BINDING_FLOOD_FROM);
     pair[1]->bindStorage(STRATA_BINDING_FLOOD_TO);

@@ -7,13 +7,13 @@
 
 namespace strata {
 
-/// What the shaders of hole filling are compiled with; `groupSize`: threads of a work-group.
+/// The #define lines that the shaders of hole filling are compiled with, for work-groups of `groupSize` threads.
 std::string floodDefines(std::uint32_t groupSize);
 
-/// floodFill() in compute shaders of OpenGL 4.3: the same four steps on the GPU, for the rasterizers that draw there.
-/// Frames are those of floodFill() but for what other rounding decides: at most 1 pixel in 200 differs by more than 2
-/// of 255. Sums are of integers, so a frame does not depend on the order of threads.
-/// The context is current whenever it is used or destroyed; it is made with the first frame that wants it.
+/// floodFill() in compute shaders of OpenGL 4.3, for the rasterizers that draw on the GPU. It takes the same four
+/// steps. Pictures equal those of floodFill() except where rounding decides: at most 1 pixel in 200 differs by more
+/// than 2 of 255. All sums are of integers, so a picture does not depend on the order of threads. The context must be
+/// current whenever this is used or destroyed. Shaders are compiled for the first picture.
 class GlFlood {
  public:
   GlFlood(const GlFunctions& functions, std::uint32_t groupSize);
@@ -21,8 +21,9 @@ class GlFlood {
   GlFlood(const GlFlood&) = delete;
   GlFlood& operator=(const GlFlood&) = delete;
 
-  /// As floodFill(); the steps' times are the GPU's, by its own clock; sending and fetching the picture is not in them.
-  /// What the driver cannot do, a picture larger than its storage blocks say, is filled by floodFill().
+  /// Does what floodFill() does. The times of the steps are those of the GPU's clock and leave out sending and fetching
+  /// the picture. floodFill() takes over where the driver cannot compile the shaders, or its storage blocks are too
+  /// small for the picture.
   FloodStats fill(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
                   Picture& picture);
 

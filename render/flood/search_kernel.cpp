@@ -7,9 +7,9 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/flood/search_kernel.cpp"  // compiled once for each instruction set
 #include <hwy/foreach_target.h>
-// After foreach_target.h: these are for one target at a time.
+// These come behind foreach_target.h, because they are compiled for one target at a time.
 #include <hwy/highway.h>
-// After highway.h, whose types it uses.
+// This one comes last, because it uses the types of highway.h.
 #include "render/flood/flood_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -17,12 +17,12 @@ namespace strata {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Some seeds with what is asked of them; lanes that hold none have anything.
+/// A vector of seeds. Lanes without a seed hold undefined values.
 struct Seeds {
   Floats x, y, z, reach, normalX, normalY, normalZ;
 };
 
-/// Finds seeds of one picture.
+/// Looks up the seeds of one half picture.
 class SeedTable {
  public:
   explicit SeedTable(const FloodSeeds& seeds)
@@ -84,7 +84,7 @@ HWY_INLINE Floats distance2(const Seeds& a, const Seeds& b) {
   return dot(apart, apart);
 }
 
-/// sameLayer() of seeds that lie this far from each other.
+/// sameLayer() for seeds whose squared distance is known.
 HWY_INLINE Mask same(const Seeds& a, const Seeds& b, Floats distance2, bool normals, const FloodSettings& settings) {
   const auto reach = hn::Min(a.reach, b.reach);
   const auto near = hn::Le(distance2, reach * reach);
@@ -98,14 +98,15 @@ HWY_INLINE Mask same(const Seeds& a, const Seeds& b, Floats distance2, bool norm
   return hn::And(near, hn::Or(hn::Or(isNone(a), isNone(b)), alike));
 }
 
-/// What a vector of pixels holds in one of its layers.
+/// What a vector of pixels holds in one of its layers. It lies in memory, because the layers do not fit the registers.
 struct Held {
   HWY_ALIGN FloodPixel seed[kFloodTile];
   HWY_ALIGN float distance2[kFloodTile];  ///< squared pixels of the half picture
   HWY_ALIGN float parts[7][kFloodTile];   ///< of Seeds, in its order
 };
 
-/// The layers of a vector of pixels while candidates come in.
+/// Searches the layers of a vector of pixels. A candidate replaces the seed of its own layer if it is closer in the
+/// picture, fills an empty layer, or replaces the farthest seed of all.
 class LayerSearch {
  public:
   LayerSearch(const LayerRound& round, const SeedTable& table, int x, int y)
@@ -119,7 +120,7 @@ class LayerSearch {
       hn::Store(hn::LoadU(kWord, &round.from.layers[k][here_]), kWord, held_[k].seed);
   }
 
-  /// The candidates that the pixels at `from` hold.
+  /// Considers the candidates that the pixels at `from` hold.
   HWY_INLINE void look(std::size_t from) {
     for (const auto& layer : round_.from.layers) {
       const auto seed = hn::LoadU(kWord, &layer[from]);
@@ -169,7 +170,7 @@ class LayerSearch {
     return out;
   }
 
-  /// Looks up what the pixels held before this round: not needed where nothing new comes.
+  /// Looks up what the pixels held before this round. Most vectors meet no new candidate and never need this.
   HWY_NOINLINE void lookUpHeld() {
     lookedUp_ = true;
     for (int k = 0; k < kFloodLayers; ++k) {
@@ -179,7 +180,7 @@ class LayerSearch {
     }
   }
 
-  /// Whether candidates are closer to their pixels than others.
+  /// The lanes in which a candidate is closer to its pixel than another; of equally close ones the smaller pixel wins.
   HWY_INLINE static Mask closer(Words seed, Floats distance2, Words otherSeed, Floats otherDistance2) {
     return hn::Or(hn::Lt(distance2, otherDistance2),
                   hn::And(hn::Eq(distance2, otherDistance2), toMask(hn::Lt(seed, otherSeed))));
@@ -240,7 +241,7 @@ void searchLayersHere(const LayerRound& round, int x, int y) {
   }
 }
 
-/// The entries of a table of kFloodNeighbours, which has kFloodTile: the first ones repeat.
+/// Looks up entries of a table of kFloodNeighbours values, which are repeated up to kFloodTile.
 template <typename Tag, typename T>
 HWY_INLINE hn::Vec<Tag> lookUp(Tag tag, const T* table, Words index) {
   if (hn::Lanes(tag) < kFloodNeighbours) return hn::GatherIndex(tag, table, hn::BitCast(kInteger, index));
@@ -285,12 +286,13 @@ std::size_t keepCloseHere(const FloodSeeds& seeds, const FloodSettings& settings
     const auto fresh =
         hn::And(hn::And(hn::FirstN(kWord, candidates.size() - i), hn::Ne(seed, hn::Set(kWord, kNoPixel))),
                 hn::And(hn::Ne(seed, hn::Set(kWord, bounds.seed)), hn::Ne(seed, lookUp(kWord, held, which))));
+    // The distance in the picture bounds that in space from below, and rules most candidates out without a look-up.
     auto close = hn::And(toMask(fresh), hn::Le(hn::Set(kFloat, bounds.leastPerPixel2) * (dx * dx + dy * dy), most));
     if (hn::AllFalse(kFloat, close)) continue;
     const Seeds others = table.gather(seed, close);
     const auto distance = distance2(one, others);
     close = hn::And(hn::And(close, hn::Le(distance, most)), same(one, others, distance, table.hasNormals(), settings));
-    // Whole vectors: compressing straight into memory takes some processors a hundred cycles.
+    // Whole vectors are stored, because compressing straight into memory takes some processors a hundred cycles.
     hn::StoreU(hn::Compress(distance, close), kFloat, kept.distance2 + out);
     hn::StoreU(hn::Compress(seed, toWord(close)), kWord, kept.seeds + out);
     out += hn::CountTrue(kFloat, close);

@@ -8,10 +8,10 @@
 
 namespace strata {
 
-// The inner loops of jump flooding, by the best instruction set of the machine.
+// The inner loops of flood_search.cpp. They run on the best instruction set of the machine.
 
-/// FloodLayers while they are searched, plane by plane. Rows have a margin to both sides that holds none, so that jumps
-/// need not ask whether they leave the picture.
+/// The layers of all pixels while they are searched: layers[k] holds layer k of every pixel. Rows have a margin without
+/// seeds on both sides, so that jumps to the side need no test.
 struct LayerArrays {
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(margin + x);
@@ -22,7 +22,7 @@ struct LayerArrays {
   std::vector<FloodPixel> layers[kFloodLayers];
 };
 
-/// One round of the layer search.
+/// One round of the layer search, which reads `from` and writes `to`.
 struct LayerRound {
   const FloodSeeds& seeds;
   const FloodSettings& settings;
@@ -30,18 +30,18 @@ struct LayerRound {
   LayerArrays& to;
   int step;
 };
-/// Pixels [x, x + kFloodTile) of row y look at the eight pixels `step` away.
+/// Lets the pixels [x, x + kFloodTile) of row y look at the eight pixels that are round.step away.
 void searchLayers(const LayerRound& round, int x, int y);
 
-/// out[i] = squared metres from `seed` to others[i], infinite where that is none.
+/// Sets out[i] to the squared distance of `seed` and others[i] in metres, infinite where there is no others[i].
 void distancesTo(const FloodSeeds& seeds, FloodPixel seed, const FloodNeighbours& others, float* out);
 
-/// What a candidate must be to become a neighbour of `seed`: of its layer, and no farther away than what is there.
+/// The tests that a candidate must pass to become a neighbour of `seed`, besides belonging to its layer.
 struct NeighbourBounds {
   FloodPixel seed;
-  float leastPerPixel2;  ///< squared metres: a point that is a pixel away in the picture is at least so far
-  float farthest2[kFloodNeighbours];  ///< squared metres by floodSector(); infinite where there is none yet
-  FloodPixel held[kFloodNeighbours];  ///< by floodSector(); these are no candidates
+  float leastPerPixel2;  ///< least squared distance of a point one pixel away in the picture, squared metres
+  float farthest2[kFloodNeighbours];  ///< by floodSector(): squared metres; infinite where there is no neighbour yet
+  FloodPixel held[kFloodNeighbours];  ///< by floodSector(): the neighbours so far, which are no candidates
 };
 /// Where keepClose() writes the candidates that it keeps. Both arrays have room for kFloodTile more.
 struct CloseCandidates {

@@ -7,10 +7,10 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/flood/splat_kernel.cpp"  // compiled once for each instruction set
 #include <hwy/foreach_target.h>
-// After foreach_target.h: these are for one target at a time.
+// These come behind foreach_target.h, because they are compiled for one target at a time.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
-// After highway.h, whose types it uses.
+// This one comes last, because it uses the types of highway.h.
 #include "render/flood/flood_vectors-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,7 +18,8 @@ namespace strata {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Calls visit(offset in the strip, depth, d^2, pixels of the vector that the splat covers).
+/// Calls visit(offset in the strip, depth, d^2, mask) for each vector of pixels; the mask says which of them the splat
+/// covers.
 template <typename Visit>
 HWY_INLINE void forEachFragment(const FloodSplat& splat, const FloodStrip& strip, Visit visit) {
   const auto one = hn::Set(kFloat, 1.0f), none = hn::Zero(kFloat);

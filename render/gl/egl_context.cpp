@@ -18,7 +18,8 @@ bool hasExtension(const char* list, const char* name) {
   return false;
 }
 
-/// Devices first: they are the GPUs; surfaceless is Mesa's choice, software included; then the default display.
+/// The displays to try, in order: the devices, which are the GPUs; Mesa's surfaceless platform, which may be software;
+/// the default display.
 std::vector<EGLDisplay> displays() {
   std::vector<EGLDisplay> found;
   const char* client = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -61,7 +62,7 @@ class EglContext final : public GlContext {
  public:
   EglContext(EGLDisplay display, EGLContext context) : display_(display), context_(context) { makeCurrent(); }
   ~EglContext() override {
-    // The display stays initialised: EGL counts no users of it, another context may be one.
+    // The display stays initialised, because EGL does not count its users and another context may still need it.
     if (eglGetCurrentContext() == context_) eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);
   }

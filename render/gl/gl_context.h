@@ -12,21 +12,22 @@ class GlContext {
 
   virtual ~GlContext() = default;
   virtual void makeCurrent() = 0;
-  /// Address of a GL function, null where the driver has none.
+  /// Returns the address of a GL function, or null where the driver has none.
   virtual Function getProc(const char* name) = 0;
 };
 
-/// Without a window: EGL on Mesa's surfaceless platform or on the first device that gives OpenGL 4.3 core.
-/// Throws Error where none does.
+/// Makes a context without a window by EGL, on the first device or platform that gives OpenGL 4.3 core. Throws Error
+/// where none does.
 std::unique_ptr<GlContext> createEglContext();
 
-/// Mesa's off-screen software renderer. Throws Error where libOSMesa is absent or has no OpenGL 4.3 core.
+/// Makes a context of Mesa's off-screen software renderer. Throws Error where the program was built without it or it
+/// has no OpenGL 4.3 core.
 std::unique_ptr<GlContext> createOsMesaContext();
 
-/// EGL, else OSMesa. Throws Error with both reasons.
+/// Makes a context without a window by EGL, or else by OSMesa. Throws Error with both reasons where neither works.
 std::unique_ptr<GlContext> createHeadlessContext();
 
-/// The context that the caller has made current and keeps so (a window's).
+/// Wraps a context that the caller has made current and keeps current, such as a window's.
 std::unique_ptr<GlContext> adoptCurrentContext(GlContext::GetProc getProc);
 
 }  // namespace strata

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-// X(return type, name without gl, parameters): every OpenGL function that Strata calls, all of 4.3 core but
-// ClipControl (4.5 or ARB_clip_control) and BufferStorage (4.4 or ARB_buffer_storage), null where absent.
+// Every OpenGL function that Strata calls, as X(return type, name without "gl", parameters). All belong to 4.3 core
+// except for ClipControl (4.5 or ARB_clip_control) and BufferStorage (4.4 or ARB_buffer_storage), which may be null.
 #define STRATA_GL_FUNCTIONS(X)                                                                                   \
   X(void, ActiveTexture, (unsigned unit))                                                                        \
   X(void, AttachShader, (unsigned program, unsigned shader))                                                     \
@@ -89,7 +89,7 @@ namespace strata {
   X(void, VertexAttribIPointer, (unsigned index, int size, unsigned type, int stride, const void* offset))       \
   X(void, Viewport, (int x, int y, int width, int height))
 
-/// The functions of one context. A table of its own for each, because EGL and OSMesa give different addresses.
+/// The functions of one context. Each context has a table of its own, because EGL and OSMesa give different addresses.
 struct GlFunctions {
 #define STRATA_GL_MEMBER(result, name, parameters) result(*name) parameters = nullptr;
   STRATA_GL_FUNCTIONS(STRATA_GL_MEMBER)
@@ -172,7 +172,7 @@ std::uint64_t largestStorageBlock(const GlFunctions& functions);
 
 /// The device and its driver: "llvmpipe (LLVM 15.0.6, 256 bits), driver 4.5 (Core Profile) Mesa 22.3.6".
 std::string glRenderer(const GlFunctions& functions);
-/// True where OpenGL runs on the CPU: the cpu rasterizer is faster there.
+/// True where OpenGL runs on the CPU, where the cpu rasterizer is faster.
 bool isSoftwareRenderer(const std::string& renderer);
 
 }  // namespace strata

@@ -9,7 +9,8 @@
 namespace strata {
 namespace {
 
-/// File i of a stage has the lines from i times this: the source number of `#line` does not reach every message.
+/// File i of a stage gets the line numbers from i times this on. The source number of `#line` would be the obvious way,
+/// but not every compiler repeats it in its messages.
 constexpr std::size_t kLinesOfAFile = 10000;
 
 std::ptrdiff_t signedSize(std::uint64_t bytes) { return static_cast<std::ptrdiff_t>(bytes); }
@@ -19,7 +20,7 @@ std::string trimmed(std::string text) {
   return text;
 }
 
-/// Throws Error unless it compiled.
+/// Compiles one stage. Throws Error with the compiler's messages where it fails.
 void compile(const GlFunctions& gl, unsigned shader, const ShaderStage& stage) {
   const std::vector<std::string_view>& files = stage.files;
   std::string text = "#version " + std::to_string(stage.version) + " core\n" + stage.preamble;

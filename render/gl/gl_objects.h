@@ -8,8 +8,10 @@
 
 namespace strata {
 
-/// Owners of GL names. `functions` outlives them, and the context is current whenever they are used or destroyed.
+// Owners of GL names. `functions` must outlive them, and the context must be current whenever they are used or
+// destroyed.
 
+/// A buffer in GPU memory.
 class GlBuffer {
  public:
   GlBuffer(const GlFunctions& functions, std::uint64_t bytes, unsigned usage);
@@ -19,11 +21,11 @@ class GlBuffer {
 
   unsigned name() const { return name_; }
   std::uint64_t bytes() const { return bytes_; }
-  /// Replaces the content and the size.
+  /// Replaces content and size. Null `data` leaves the content undefined.
   void assign(const void* data, std::uint64_t bytes);
   void write(std::uint64_t offset, const void* data, std::uint64_t bytes);
   void read(std::uint64_t offset, void* data, std::uint64_t bytes) const;
-  /// As many bytes at least, with any content.
+  /// Makes the buffer at least `bytes` large. Its content is undefined afterwards.
   void reserve(std::uint64_t bytes);
   /// Sets every 32-bit word.
   void fill(std::uint32_t word);
@@ -38,16 +40,18 @@ class GlBuffer {
   std::uint64_t bytes_ = 0;
 };
 
+/// One stage of a program, and the texts that it is compiled from.
 struct ShaderStage {
   unsigned kind;                        ///< gl::kComputeShader, ...
-  std::vector<std::string_view> files;  ///< names in render/shaders, compiled as one text after version and preamble
+  std::vector<std::string_view> files;  ///< names in render/shaders; compiled as one text, behind version and preamble
   std::string preamble = "";            ///< whole lines: #extension, #define
   int version = 430;                    ///< of GLSL
 };
 
+/// A compiled program.
 class GlProgram {
  public:
-  /// Throws Error with the compiler's words, each naming the file and the line, where a stage does not compile.
+  /// Throws Error where a stage does not compile, with the messages of the compiler, which name file and line.
   GlProgram(const GlFunctions& functions, const std::vector<ShaderStage>& stages);
   ~GlProgram();
   GlProgram(const GlProgram&) = delete;
@@ -60,7 +64,7 @@ class GlProgram {
   unsigned name_ = 0;
 };
 
-/// When the GPU has done what was asked of it before, by its own clock.
+/// Records when the GPU has finished all commands given before, by its own clock.
 class GlTimestamp {
  public:
   explicit GlTimestamp(const GlFunctions& functions) : gl_(functions) { gl_.GenQueries(1, &name_); }
@@ -69,7 +73,7 @@ class GlTimestamp {
   GlTimestamp& operator=(const GlTimestamp&) = delete;
 
   void record() const { gl_.QueryCounter(name_, gl::kTimestamp); }
-  /// Of the last record(), nanoseconds; waits for it.
+  /// Waits for the time of the last record() and returns it, nanoseconds.
   std::uint64_t value() const;
 
  private:
@@ -77,11 +81,11 @@ class GlTimestamp {
   unsigned name_ = 0;
 };
 
-/// Turns line numbers of a whole stage into file and line, in messages like `0:10020(3): error` or `0(10020) : error`
-/// (file 1, line 20).
+/// Turns the line numbers of a stage's text into file and line, in messages like `0:10020(3): error` or
+/// `0(10020) : error`, both of which mean line 20 of the second file.
 std::string nameShaderFiles(const std::string& log, const std::vector<std::string_view>& files);
 
-/// Text of one file of render/shaders, built into the program. Throws Error for an unknown name.
+/// The text of a file of render/shaders, which is built into the program. Throws Error for an unknown name.
 std::string_view shaderText(std::string_view file);
 
 }  // namespace strata

@@ -32,10 +32,11 @@ void GlStaging::map() {
   gl_.BindBuffer(gl::kCopyReadBuffer, name_);
   gl_.BufferStorage(gl::kCopyReadBuffer, bytes, nullptr, kFlags);
   mapped_ = static_cast<std::uint32_t*>(gl_.MapBufferRange(gl::kCopyReadBuffer, 0, bytes, kFlags));
-  if (mapped_ == nullptr) (void)gl_.GetError();  // no memory for it: said once, not to be taken for a later failure
+  if (mapped_ == nullptr) (void)gl_.GetError();  // takes back the error, which a later check would blame on a page
 }
 
 void GlStaging::enterHalf(int half) {
+  // The fence lies behind the last copy out of the half that is left now.
   copied_[half_] = gl_.FenceSync(gl::kGpuCommandsComplete, 0);
   half_ = half;
   next_ = 0;

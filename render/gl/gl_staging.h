@@ -7,21 +7,22 @@
 
 namespace strata {
 
-/// Where words are put together before the GPU copies them to where they stay: a buffer that is mapped once and for all
-/// (OpenGL 4.4 or ARB_buffer_storage), gone through as a ring of two halves. A half is written again only when the GPU
-/// has copied what stood in it, which by then it nearly always has. Elsewhere, and for what a half cannot hold, plain
-/// memory and glBufferSubData.
+/// Memory in which data is assembled before the GPU copies it to its buffer. It is a ring of two halves that stay
+/// mapped (OpenGL 4.4 or ARB_buffer_storage). A half is written again only after the GPU has copied its content, which
+/// is nearly always the case by then. Without that extension, and for what is larger than a half, it is plain memory
+/// and glBufferSubData.
 class GlStaging {
  public:
-  /// The ring is made when it is first used.
+  /// The ring, of two halves of `halfBytes` bytes, is made when it is first used.
   GlStaging(const GlFunctions& functions, std::uint64_t halfBytes);
   ~GlStaging();
   GlStaging(const GlStaging&) = delete;
   GlStaging& operator=(const GlStaging&) = delete;
 
-  /// Room for so many words, with any content, to be written and not read; for one send() before the next call.
+  /// Returns room for `words` words of undefined content, which may be written but not read. It is valid for one send()
+  /// and until the next call.
   std::span<std::uint32_t> room(std::size_t words);
-  /// Sends the last room to `to`, from the byte `offset` on.
+  /// Copies the last room to `to`, from byte `offset` on.
   void send(GlBuffer& to, std::uint64_t offset);
 
   bool isMapped() const { return mapped_ != nullptr; }
@@ -35,7 +36,7 @@ class GlStaging {
   const bool canMap_;
   unsigned name_ = 0;
   std::uint32_t* mapped_ = nullptr;
-  void* copied_[2] = {nullptr, nullptr};  ///< a fence behind all that is copied out of each half
+  void* copied_[2] = {nullptr, nullptr};  ///< for each half a fence behind the last copy out of it
   int half_ = 0;
   std::uint64_t next_ = 0;  ///< words used of the half
   std::vector<std::uint32_t> plain_;

@@ -8,7 +8,7 @@
 
 namespace strata {
 
-/// What batch.glsl and what includes it are compiled for.
+/// What batch.glsl, and the shaders that include it, are compiled for.
 struct ShaderVariant {
   int views = 1;
   bool clip = false;
@@ -18,9 +18,10 @@ struct ShaderVariant {
   std::string defines() const;
 };
 
+/// "#define NAME VALUE" with a line end.
 std::string define(const std::string& name, const std::string& value);
 
-/// Programs of the same files, each compiled when it is first asked for.
+/// The variants of one program, each compiled when it is first asked for.
 class ProgramCache {
  public:
   ProgramCache(const GlFunctions& functions, std::vector<ShaderStage> stages)

@@ -15,7 +15,7 @@
 namespace strata {
 namespace {
 
-/// What compute64 asks of the driver, by either name.
+/// The extensions that compute64 needs, each by any of its names.
 const std::vector<std::vector<std::string>>& wideAtomics() {
   static const std::vector<std::vector<std::string>> needs = {
       {"GL_ARB_gpu_shader_int64", "GL_AMD_gpu_shader_int64"},
@@ -23,14 +23,14 @@ const std::vector<std::vector<std::string>>& wideAtomics() {
   return needs;
 }
 
-/// The first of `either` that the driver has; empty where it has none.
+/// The first name in `either` that the driver has; empty where it has none.
 std::string extensionOf(const GlFunctions& gl, const std::vector<std::string>& either) {
   const auto found =
       std::find_if(either.begin(), either.end(), [&gl](const std::string& name) { return hasExtension(gl, name); });
   return found == either.end() ? "" : *found;
 }
 
-/// As #extension lines. Throws Error with what is missing.
+/// The #extension lines of compute64. Throws Error that names the extensions that are missing.
 std::string requireWideAtomics(const GlFunctions& gl) {
   std::string lines, missing;
   for (const std::vector<std::string>& either : wideAtomics()) {
@@ -79,7 +79,7 @@ class ComputeRasterizer final : public Rasterizer {
                        stages("compute_lock.comp", scene_,
                               prefetch(experiment.prefetch) +
                                   define("STRATA_LOCK_TURNS", std::to_string(experiment.lockTurns) + "u")));
-    // Now, so that a driver that cannot is found out when the rasterizer is made.
+    // Compiled now, so that a driver that cannot is noticed in the constructor.
     scene_.compile();
     (onePass_ ? *onePass_ : passes32_).get({});
   }
@@ -168,7 +168,8 @@ class ComputeRasterizer final : public Rasterizer {
     }
   }
 
-  /// A lock stayed taken for too long, so points are missing: the depths may be too large, never too small.
+  /// Draws the points that are missing because a lock stayed taken for too long. The passes of compute32 may go on from
+  /// the depths so far, because these are too large at worst, never too small.
   void repair(DrawStats& stats) {
     target_.beginRepair(scene_.candidateWords());
     dispatchPasses32();

@@ -10,34 +10,37 @@
 
 namespace strata {
 
-/// Rows [first, end) of every view's image: as much as storage blocks hold at once.
+/// Rows [first, end) of every view's image, so few that the storage blocks hold them at once.
 struct Band {
   int first = 0, end = 0;
 };
 
-/// Pixels of some views on the GPU, one view after the other.
+/// The pixels of several views in GPU memory, one view behind the other. Pictures that are too large for the driver's
+/// storage blocks are drawn in bands.
 class ComputeTarget {
  public:
   ComputeTarget(const GlFunctions& functions, ComputeWay way);
 
-  /// Sets the views' sizes and what there is a buffer for beside depth and id. Returns the bands of the images.
+  /// Takes the sizes of the views, and whether they have sums and counts besides depths and ids. Returns the bands that
+  /// together cover the images.
   std::vector<Band> begin(std::span<const VisibilityBuffer> views, bool sums, bool counts);
-  /// Clears the pixels of a band and binds them.
+  /// Clears and binds the pixels of a band, which later calls are about.
   void beginBand(const Band& band);
-  /// Clears the ids and binds what compute32's passes need: for compute_lock, where a point was given up.
+  /// For compute_lock, where a point was given up: clears the ids and binds what the passes of compute32 need.
   void beginRepair(std::uint64_t candidateWords);
-  /// compute32: room for its candidates.
+  /// For compute32: makes room for so many words of candidates and binds it.
   void bindCandidates(std::uint64_t words);
-  /// Binds what accumulate.comp writes, cleared.
+  /// Clears and binds the buffer that accumulate.comp writes to.
   void bindSums();
-  /// Of the band, in the program in use.
+  /// Sets STRATA_UNIFORM_PIXELS in the program in use.
   void setUniforms() const;
-  /// Reads the band back.
+  /// Reads the band back into the buffers of the views.
   void read(std::span<VisibilityBuffer> views);
 
  private:
+  /// The rows of one view that the band holds.
   struct ViewRows {
-    std::size_t first = 0;   ///< pixel in the buffers
+    std::size_t first = 0;   ///< index of their first pixel in the buffers
     int begin = 0, end = 0;  ///< rows
     std::size_t count = 0;
   };
@@ -48,7 +51,7 @@ class ComputeTarget {
   GlBuffer depths_, ids_, locks_, candidates_, sums_;
   const std::uint64_t largestBlock_;  ///< bytes
   std::vector<int> widths_, heights_;
-  std::vector<ViewRows> rows_;  ///< of the band, one a view
+  std::vector<ViewRows> rows_;  ///< of the band, one per view
   std::size_t pixels_ = 0;      ///< of the band
   bool hasSums_ = false, hasCounts_ = false;
   std::vector<std::uint32_t> hostDepths_, hostIds_;

@@ -10,7 +10,7 @@
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kPlanSize = 32;  ///< threads that plan one part; 8 where OpenGL runs on the CPU
+constexpr std::uint32_t kPlanSize = 32;  ///< threads that plan one part on a GPU
 
 std::vector<ShaderStage> planStages(bool software) {
   return {{gl::kComputeShader,
@@ -48,7 +48,7 @@ bool seen(const ViewConstants& c, const NodeData& node) {
 
 }  // namespace
 
-/// One frame in the making.
+/// A draw while it is prepared.
 struct GlScene::PreparedDraw {
   struct PerPage {
     std::vector<shader::DrawPart> parts;
@@ -60,9 +60,9 @@ struct GlScene::PreparedDraw {
   const DrawOptions& options;
   const How& how;
   NodeNeeds needs;
-  std::vector<std::vector<GridTransform>> grids{};  ///< per view, then those of the CPU's plans
+  std::vector<std::vector<GridTransform>> grids{};  ///< of each view, then of each plan of the CPU
   std::vector<GridFinder> finders{};
-  RenderList odd{};  ///< items that the CPU plans; the others keep their count, so that ids stay
+  RenderList odd{};  ///< items that the CPU plans. The others have no node but keep their count, so that ids stay
   std::vector<const GpuNode*> oddNodes{};
   std::vector<PerPage> pages{};
   std::vector<shader::DrawPart> parts{};
@@ -112,7 +112,8 @@ DrawStats GlScene::prepare(const RenderList& list, std::span<const View> views, 
   return draw.stats;
 }
 
-/// Uploads the node where a view may see it, and leaves its batches to plan.comp or to the CPU.
+/// Uploads the node of an item if a view may see it. Leaves its batches to plan.comp where all lie on one grid, else to
+/// addPlanned().
 void GlScene::addItem(PreparedDraw& draw, std::uint32_t item, std::uint32_t firstId) {
   const std::shared_ptr<const NodeData>& node = draw.list.items[item].node;
   draw.odd.items.push_back({nullptr, draw.list.items[item].pointCount});
@@ -136,7 +137,8 @@ void GlScene::addItem(PreparedDraw& draw, std::uint32_t item, std::uint32_t firs
   draw.oddNodes.back() = gpuNode;
 }
 
-/// False where 32 bits of grid steps do not reach from an eye to all of the node.
+/// Adds the parts of a node for plan.comp. False where 32 bits of grid steps do not reach from an eye to all of the
+/// node.
 bool GlScene::addParts(PreparedDraw& draw, const NodeData& node, const GpuNode& gpuNode, std::uint32_t prefix,
                        std::uint32_t firstId) {
   shader::DrawPart common{};
@@ -170,7 +172,7 @@ bool GlScene::addParts(PreparedDraw& draw, const NodeData& node, const GpuNode& 
   return true;
 }
 
-/// Batches that the CPU plans: one record for each view that sees them.
+/// Plans the batches that are left to the CPU, and adds one record for each view that sees a batch.
 void GlScene::addPlanned(PreparedDraw& draw) {
   const bool none = std::all_of(draw.oddNodes.begin(), draw.oddNodes.end(),
                                 [](const GpuNode* gpuNode) { return gpuNode == nullptr; });
@@ -209,7 +211,8 @@ void GlScene::addPlanned(PreparedDraw& draw) {
   }
 }
 
-/// Gives every page one run, or more where one dispatch cannot hold its batches.
+/// Arranges the records of each page as one run, or as several where one dispatch cannot hold its batches. A run has
+/// the CPU's records first, then room for those that plan.comp appends.
 void GlScene::layRuns(PreparedDraw& draw) {
   runs_.clear();
   records_.clear();
@@ -235,6 +238,7 @@ void GlScene::layRuns(PreparedDraw& draw) {
       ++runs_.back().capacity;
     }
     for (shader::DrawPart& part : here.parts) {
+      // Indices of grids so far count from the view's own first grid; on the GPU all grids lie in one array.
       for (std::size_t v = 0, firstGrid = 0; v < constants_.size(); firstGrid += draw.grids[v++].size())
         if (part.first[v].w >= 0) part.first[v].w += static_cast<int>(firstGrid);
       if (runs_.back().capacity + part.boxCount > kMostBoxes) open();
@@ -307,7 +311,7 @@ void GlScene::bind(const PageRun& run) const {
   gridBuffer_.bindStorage(STRATA_BINDING_GRIDS);
 }
 
-/// A work-group for each record of the run; plan.comp has counted them.
+/// The number of work-groups is read from runBuffer_, because plan.comp has counted the records.
 void GlScene::dispatch(const PageRun& run) const {
   bind(run);
   gl().Uniform1ui(STRATA_UNIFORM_FIRST_RECORD, run.firstRecord);

@@ -16,17 +16,18 @@
 
 namespace strata {
 
-/// Batches whose nodes lie in one page; their records are consecutive.
+/// Batches that one dispatch draws: their nodes lie in one page, and their records are consecutive.
 struct PageRun {
   std::uint32_t page = 0;
   std::uint32_t firstRecord = 0;
-  std::uint32_t recordCount = 0;  ///< made by the CPU; plan.comp appends to them
-  std::uint32_t capacity = 0;     ///< of records, at most kMostBoxes
+  std::uint32_t recordCount = 0;  ///< records that the CPU made; plan.comp appends its own
+  std::uint32_t capacity = 0;     ///< the records that the run has room for, at most kMostBoxes
   std::uint32_t firstPart = 0;
   std::uint32_t partCount = 0;
 };
 
-/// What the GL rasterizers share: the context and, for each frame, node data and batch records on the GPU.
+/// What compute and points rasterizers share: the device, the nodes in GPU memory, and for each draw the records of the
+/// batches. A draw goes prepare(), dispatchPlan(), then dispatch() for each of the runs().
 class GlScene {
  public:
   /// Throws Error where the context has no OpenGL 4.3.
@@ -41,26 +42,30 @@ class GlScene {
   /// Compiles plan.comp. Throws Error where the driver cannot.
   void compile() { plans_.get({}); }
 
+  /// What prepare() is to do besides uploading nodes.
   struct How {
-    bool cullOnGpu = false;  ///< by dispatchPlan(); else all records are the CPU's
-    bool colours = false;    ///< upload the points' colours
-    int forcedPlanes = 0;    ///< experiments: planes to read, and nothing is culled; 0: neither
+    bool cullOnGpu = false;  ///< leave batches to dispatchPlan(); else the CPU makes all records
+    bool colours = false;    ///< upload the colours of the points
+    int forcedPlanes = 0;    ///< ComputeExperiment::forcedPlanes
   };
-  /// Decides what is drawn and uploads what it needs within the budgets. At most STRATA_MOST_VIEWS views, one with the
-  /// CPU's records. Without cullOnGpu the stats are whole but for the times.
+  /// Decides what is drawn, and uploads it as far as the budgets allow. There are at most STRATA_MOST_VIEWS views, and
+  /// only one without cullOnGpu. Without cullOnGpu the stats are complete except for the times; else the counters add
+  /// the rest.
   DrawStats prepare(const RenderList& list, std::span<const View> views, const DrawOptions& options, const How& how);
-  /// Culls on the GPU: frustum, prefix and clip region; chooses precisions, appends records. Clears the counters.
+  /// Clears the counters. Then culls batches on the GPU by frustum, prefix and clip region, chooses their precisions
+  /// and appends their records.
   void dispatchPlan();
   shader::Counters readCounters() const;
 
-  /// Of the frame that was prepared.
+  // The following are about the draw that was prepared last.
   const std::vector<PageRun>& runs() const { return runs_; }
   const std::vector<shader::BatchRecord>& records() const { return records_; }
   std::uint64_t candidateWords() const { return candidateWords_; }
   const ShaderVariant& variant() const { return variant_; }
   bool drawable() const { return drawable_; }
-  /// Binds records and page for a shader that includes batch.glsl.
+  /// Binds the records and the page of a run for a shader that includes batch.glsl.
   void bind(const PageRun& run) const;
+  /// Draws a run with the program in use, one work-group per record.
   void dispatch(const PageRun& run) const;
   void bindCounters() const { counters_.bindStorage(STRATA_BINDING_COUNTERS); }
   /// Sets the uniforms of batch.glsl in the program in use.

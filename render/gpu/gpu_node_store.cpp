@@ -9,7 +9,7 @@
 namespace strata {
 namespace {
 
-constexpr int kErrorFlags = 16;  ///< more than a driver keeps; a lost context would report for ever
+constexpr int kErrorFlags = 16;  ///< more than a driver keeps; a lost context would report errors for ever
 
 }  // namespace
 
@@ -34,7 +34,8 @@ void GpuNodeStore::beginFrame(const RenderList& list) {
   }
 }
 
-/// Counts what will be uploaded; the first upload of a frame always passes.
+/// True when `bytes` more may be uploaded in this frame. The first upload always passes, so that a large node gets its
+/// turn.
 bool GpuNodeStore::withinBudget(std::uint64_t bytes) {
   return uploadedBytes_ == 0 || uploadedBytes_ + bytes <= uploadBytesPerFrame_;
 }
@@ -53,7 +54,7 @@ const GpuNode* GpuNodeStore::require(const std::shared_ptr<const NodeData>& node
       uploadedBytes_ += bytes;
     }
     if (room) return &entry.gpuNode;
-    all.classes = all.classes || entry.classes;
+    all.classes = all.classes || entry.classes;  // they were needed before, and may be again
   }
   std::uint64_t bytes = 0;
   for (const NodePart& part : splitNode(*node, all, std::min(kPartBytes, maxPageBytes_), groupSize_))
@@ -104,7 +105,8 @@ void GpuNodeStore::writeColours(const NodeData& node, const NodePart& part, cons
   staging_.send(pages_[part.page]->buffer, std::uint64_t{part.firstColour} * 4);
 }
 
-/// Evicts as long as that can help.
+/// Finds a range for a part. Where no page has one, it adds a page, or else evicts nodes until one fits or only nodes
+/// of this frame are left.
 bool GpuNodeStore::allocate(std::uint32_t words, NodePart& part) {
   for (;;) {
     for (std::uint32_t page = 0; page < pages_.size(); ++page) {
@@ -120,8 +122,8 @@ bool GpuNodeStore::allocate(std::uint32_t words, NodePart& part) {
   }
 }
 
-/// False where the cap or the driver allows no page that holds `words`. A driver that refuses a page is asked for
-/// smaller ones, then never again.
+/// Adds a page that holds at least `words`. False where the cap or the driver does not allow it. A driver that refuses
+/// a page is asked for smaller ones; once it has refused the smallest, it is not asked again.
 bool GpuNodeStore::addPage(std::uint32_t words) {
   std::uint64_t bytes = std::min(maxPageBytes_, maxBytes_ - pageBytes_) / 16 * 16;
   const std::uint64_t least = std::uint64_t{words} * 4;

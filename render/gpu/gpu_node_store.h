@@ -14,29 +14,31 @@
 
 namespace strata {
 
-/// Nodes in storage buffers of at most kPageBytes (a driver may allow no larger block to be bound), the least recently
-/// listed node evicted first. A node longer than a part is split at its batches; so there is no limit on its length.
-/// A node is known by its shared pointer: one that was freed never stands for another that took its address, because
-/// the entry's weak pointer has expired then.
+/// Keeps nodes in GPU memory, in storage buffers ("pages") of at most kPageBytes, because a driver may not bind larger
+/// ones. A node may have any length: it is split into parts at its batches. Where room is missing, the node that was
+/// listed least recently is evicted.
+/// Nodes are found by their address. A node that took the address of a freed one is not mistaken for it, because the
+/// weak pointer of the old entry has expired.
 class GpuNodeStore {
  public:
   static constexpr std::uint64_t kPageBytes = std::uint64_t{64} << 20;
   static constexpr std::uint64_t kPartBytes = kPageBytes / 4;
 
-  /// `groupSize`: threads that share a batch's candidates in compute32.comp.
+  /// `groupSize` threads share the candidates of a batch in compute32.comp.
   GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame,
                std::uint32_t groupSize);
 
-  /// Frees nodes that are gone from the host and protects those of `list` from eviction.
+  /// Frees nodes that the host has dropped, and protects those of `list` from eviction until the next call.
   void beginFrame(const RenderList& list);
-  /// Uploads the node, or what is needed and not there. Null where this frame's upload budget is used up (the first
-  /// upload of a frame always passes), no memory can be freed, or a batch is longer than a page.
+  /// Returns the node with all that is needed of it, after uploading what is missing. Null where the upload budget of
+  /// this frame is used up (the first upload of a frame always passes), no memory can be freed, or a batch is longer
+  /// than a page.
   const GpuNode* require(const std::shared_ptr<const NodeData>& node, const NodeNeeds& needs);
 
   void bindPage(std::uint32_t page) const { pages_[page]->buffer.bindStorage(STRATA_BINDING_PAGE); }
-  /// By this frame.
+  /// The bytes uploaded since beginFrame().
   std::uint64_t uploadedBytes() const { return uploadedBytes_; }
-  /// Of all pages; at most the `gpuBytes` of the constructor.
+  /// The bytes of all pages, at most the `gpuBytes` of the constructor.
   std::uint64_t gpuBytes() const { return pageBytes_; }
 
  private:
@@ -50,10 +52,10 @@ class GpuNodeStore {
     const NodeData* key;
     std::weak_ptr<const NodeData> node;
     GpuNode gpuNode;
-    std::vector<std::uint32_t> words;  ///< of each part
-    bool classes, colours;             ///< there is room for them
+    std::vector<std::uint32_t> words;  ///< the length of each part
+    bool classes, colours;             ///< the parts have room for them
     std::uint64_t colourKey;
-    std::uint64_t frame;  ///< the last one that listed it
+    std::uint64_t frame;  ///< the last frame that listed the node
   };
   using Entries = std::list<Entry>;
 

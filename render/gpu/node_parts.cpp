@@ -11,7 +11,7 @@
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kFours = 8;  ///< of points, whose candidates are one word; as in compute32.comp
+constexpr std::uint32_t kFours = 8;  ///< fours of points whose candidates share a word, as in compute32.comp
 
 std::uint32_t wholeFours(std::uint32_t count) { return (count + 3) / 4 * 4; }
 

@@ -15,14 +15,14 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kPixelsAtOnce = std::size_t{1} << 16;
-constexpr int kDepthExponent = 40;  ///< the shader stores depth * 2^-40; the host takes it back without loss
+constexpr int kDepthExponent = 40;  ///< the shader stores depth * 2^-40, which the host multiplies back without loss
 
-/// Layout of OpenGL's DrawArraysIndirectCommand.
+/// OpenGL's DrawArraysIndirectCommand.
 struct DrawCommand {
   std::uint32_t count, instances, first, baseInstance;
 };
 
-/// An id per pixel and a float depth, drawn to through a framebuffer.
+/// A framebuffer with an id and a float depth per pixel.
 class PointTarget {
  public:
   explicit PointTarget(const GlFunctions& functions) : gl_(functions) {
@@ -37,7 +37,7 @@ class PointTarget {
   PointTarget(const PointTarget&) = delete;
   PointTarget& operator=(const PointTarget&) = delete;
 
-  /// Binds and clears. False where the driver has no framebuffer of this size.
+  /// Binds and clears the framebuffer. False where the driver has none of this size.
   bool begin(int width, int height) {
     if (width > maxSide_ || height > maxSide_) return false;
     gl_.BindFramebuffer(gl::kFramebuffer, framebuffer_);
@@ -55,7 +55,7 @@ class PointTarget {
     return true;
   }
 
-  /// Row 0 is the top, because the shader puts it at the bottom of GL's image.
+  /// Reads ids and depths. Row 0 is on top, because the shader draws it at the bottom of GL's image.
   void read(std::uint32_t* ids, float* depths) const {
     gl_.PixelStorei(gl::kPackAlignment, 4);
     gl_.ReadBuffer(gl::kColourAttachment0);
@@ -93,7 +93,7 @@ class PointsRasterizer final : public Rasterizer {
     if (scene_.gl().ClipControl == nullptr)
       throw Error("OpenGL", "points needs glClipControl (OpenGL 4.5 or ARB_clip_control), found none");
     scene_.gl().GenVertexArrays(1, &vertexArray_);
-    programs_.get({});  // now, so that a driver that cannot is found out when the rasterizer is made
+    programs_.get({});  // compiled now, so that a driver that cannot is noticed in the constructor
   }
 
   ~PointsRasterizer() override {
@@ -130,7 +130,7 @@ class PointsRasterizer final : public Rasterizer {
             {gl::kFragmentShader, {"shader_types.h", "points.frag"}, defines}};
   }
 
-  /// One draw for each record, which finds its record's number as an instanced attribute.
+  /// Writes one draw command per record. A draw gets the number of its record as an instanced attribute.
   void writeCommands() {
     const std::vector<shader::BatchRecord>& records = scene_.records();
     std::vector<DrawCommand> commands;
@@ -153,7 +153,7 @@ class PointsRasterizer final : public Rasterizer {
     drawRuns();
     ids_.resize(buffer_.pixels.size());
     depths_.resize(buffer_.pixels.size());
-    scene_.gl().Finish();  // llvmpipe draws when it has to, and counts no time until then
+    scene_.gl().Finish();  // llvmpipe draws as late as it can, and its clock does not count the delay
     end_.record();
     target_.read(ids_.data(), depths_.data());
     if (counts) countPoints();
@@ -176,7 +176,7 @@ class PointsRasterizer final : public Rasterizer {
     }
   }
 
-  /// Every point again, with no depth test.
+  /// Draws every point once more, without a depth test, and counts per pixel.
   void countPoints() {
     const std::uint64_t bytes = buffer_.counts.size() * sizeof(std::uint32_t);
     counts_.reserve(bytes);
@@ -209,7 +209,7 @@ class PointsRasterizer final : public Rasterizer {
     gl.BindBuffer(gl::kDrawIndirectBuffer, commands_.name());
   }
 
-  /// Back to what a window's other drawing expects.
+  /// Restores the state that other drawing in a window expects.
   void resetState() const {
     const GlFunctions& gl = scene_.gl();
     gl.BindBuffer(gl::kDrawIndirectBuffer, 0);

@@ -7,8 +7,9 @@
 
 namespace strata {
 
-/// Draws GL_POINTS through the fixed pipeline: the yardstick for the compute shaders. Depth ties go to any point.
-/// Throws Error where the context cannot. Images larger than the driver's largest framebuffer stay empty.
+/// Makes a rasterizer that draws GL_POINTS through the fixed pipeline, as a yardstick for the compute shaders. Any of
+/// the points at an equal depth may win a pixel. Images larger than the driver's largest framebuffer stay empty. Throws
+/// Error where the context cannot.
 std::unique_ptr<Rasterizer> createPointsRasterizer(std::unique_ptr<GlContext> context,
                                                    const RasterizerOptions& options);
 

@@ -14,7 +14,7 @@ struct Step {
   int x, y;
 };
 
-/// The places of the largest window by their distance from its middle.
+/// The offsets of the largest window, ordered by their distance from its middle.
 std::vector<Step> stepsByDistance() {
   std::vector<Step> steps;
   for (int y = -kReach; y <= kReach; ++y)
@@ -24,7 +24,7 @@ std::vector<Step> stepsByDistance() {
   return steps;
 }
 
-/// Fills holes out of a picture that stays as it is.
+/// Fills holes from a picture that does not change meanwhile, so that rows may be filled in any order.
 class HoleFiller {
  public:
   HoleFiller(const VisibilityBuffer& from, const FillSizes& sizes)
@@ -32,7 +32,8 @@ class HoleFiller {
 
   void fillRow(int y, PackedPixel* to) const {
     const int top = std::max(y - kReach, 0), bottom = std::min(y + kReach, from_.height - 1);
-    // The front of the largest window: who is not far behind that needs no closer look.
+    // A pixel that is not far behind the front of the largest window is not far behind that of its own smaller one.
+    // This settles most pixels cheaply.
     std::vector<PackedPixel> front(width_, kEmptyPixel), columns(width_, kEmptyPixel);
     for (int row = top; row <= bottom; ++row) lowerRow(&from_.pixels[at(0, row)], columns.data(), width_);
     dilateRow(columns.data(), front.data(), width_, DrawOptions::kLargestFill);

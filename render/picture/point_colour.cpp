@@ -11,7 +11,7 @@ namespace {
 std::uint32_t intensityColour(std::uint16_t intensity, const glm::vec2& range) {
   const float span = std::max(range.y - range.x, 1e-6f);
   const float t = (static_cast<float>(intensity) - range.x) / span;
-  // The square root: what scanners record spans decades, and most of a scan is in the dark tenth of the range.
+  // Intensities span decades, and most of a scan lies in the darkest tenth of the range. The square root spreads it.
   const int grey = static_cast<int>(std::sqrt(std::clamp(t, 0.0f, 1.0f)) * 255.0f + 0.5f);
   return packColour(grey, grey, grey);
 }

@@ -7,7 +7,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/picture/post_kernel.cpp"  // compiled once for each instruction set
 #include <hwy/foreach_target.h>
-// After foreach_target.h: these two are for one target at a time.
+// These two come behind foreach_target.h, because they are compiled for one target at a time.
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -61,12 +61,12 @@ void log2All(const float* depth, float* to, std::size_t width) {
 constexpr hn::ScalableTag<float> kFloat{};
 constexpr std::size_t kMostLanes = HWY_MAX_BYTES / sizeof(float);
 
-/// Where one vector of pixels finds its depths: in the rows above, here and below, to the left, here and to the right.
+/// Where a vector of pixels finds the depths around it: at[row][side], from the row above and the left on.
 struct Neighbours {
   const float* at[3][3];
 };
 
-/// Shades one vector of pixels. All pixels go through here, so that a pixel's colour does not depend on its column.
+/// Shades one vector of pixels. All pixels are shaded here, so that a colour does not depend on the pixel's column.
 HWY_INLINE void shadeVector(const Neighbours& near, float gain, std::uint32_t* colours) {
   const hn::RebindToUnsigned<decltype(kFloat)> word;
   const hn::RebindToSigned<decltype(kFloat)> integer;
@@ -90,7 +90,8 @@ HWY_INLINE void shadeVector(const Neighbours& near, float gain, std::uint32_t* c
   hn::StoreU(hn::IfThenElse(hn::RebindMask(word, drawn), result, colour), word, colours);
 }
 
-/// At most one vector of pixels, some of whose neighbours may lie beyond the row's ends: the ends stand in for them.
+/// Shades at most one vector of pixels near the ends of a row. Neighbours beyond an end are replaced by the end's
+/// pixel.
 void shadeAtEnd(const EdlRows& r, std::size_t begin, std::size_t end, float gain, std::uint32_t* colours) {
   float depths[3][3][kMostLanes];
   std::uint32_t some[kMostLanes] = {};

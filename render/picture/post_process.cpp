@@ -25,7 +25,7 @@ PointSizes::PointSizes(const DrawOptions& options, const View& view)
 
 namespace {
 
-/// Points of one size: strips of rows stay in the cache between the two directions.
+/// Dilates points of one size, in strips of rows, which stay in the cache between the two directions.
 void dilateEvenly(VisibilityBuffer& buffer, std::size_t size, const ThreadPool& pool) {
   const auto width = static_cast<std::size_t>(buffer.width), height = static_cast<std::size_t>(buffer.height);
   resizePixels(buffer.scratch.pixels, buffer.pixels.size());
@@ -89,7 +89,7 @@ void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool&
       for (std::size_t row = y - std::min(y, reach / 2); row <= last; ++row) {
         const PackedPixel* from = &rows[row * width];
         const std::uint8_t* size = &sizeOf[row * width];
-        // Reaches down by size / 2 and up by (size - 1) / 2.
+        // A point reaches size / 2 rows down and (size - 1) / 2 rows up; `least` is the size that reaches row y.
         const std::size_t least = row <= y ? 2 * (y - row) : 2 * (row - y) + 1;
         for (std::size_t x = 0; x < width; ++x) to[x] = size[x] >= least ? std::min(to[x], from[x]) : to[x];
       }

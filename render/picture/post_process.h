@@ -14,7 +14,7 @@ namespace strata {
 /// How many pixels wide a point at some depth is drawn.
 class PointSizes {
  public:
-  /// All alike.
+  /// All points are `pixels` wide.
   explicit PointSizes(int pixels);
   PointSizes(const DrawOptions& options, const View& view);
 
@@ -24,7 +24,7 @@ class PointSizes {
                ? static_cast<int>(std::min(pixels + 0.5f, static_cast<float>(DrawOptions::kLargestPoint)))
                : least_;
   }
-  /// True where at() is the same for every depth.
+  /// True when at() gives the same size for every depth.
   bool even() const { return pixelsAtUnitDepth_ <= 0.0f; }
   bool alwaysOne() const { return least_ <= 1 && pixelsAtUnitDepth_ <= 0.0f; }
 
@@ -34,10 +34,11 @@ class PointSizes {
   bool perspective_ = true;
 };
 
-/// How large the window of fillHoles() is at a pixel: 1, 3, 5 or 7.
+/// How large the window of fillHoles() is at a pixel: 1, 3, 5 or 7 pixels.
 class FillSizes {
  public:
-  /// With DrawOptions::gaze at least 3 near the gaze, 5 and 7 farther out (Schütz 2022, 3.6), in its three parts.
+  /// With DrawOptions::gaze the window is at least 3 near the gaze, and 5 and 7 in the two rings around it (Schütz
+  /// 2022, 3.6).
   FillSizes(const DrawOptions& options, const View& view);
 
   int at(int x, int y) const;
@@ -51,19 +52,19 @@ class FillSizes {
   float third_ = 1.0f;
 };
 
-/// Depth-aware dilation: a pixel that is empty, or lies more than kBlendDepth behind the nearest pixel of the window
-/// around it, takes that of the pixels not so far behind which is closest in the picture (of equally close ones the
-/// upper, then the left). What is in front stays as it is.
+/// Fills holes by depth-aware dilation. A pixel is filled if it is empty, or if it lies more than kBlendDepth behind
+/// the nearest pixel of the window around it. It becomes the closest pixel of the window that is not so far behind; of
+/// equally close ones the upper, then the left one. All other pixels stay.
 void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool);
 
-/// Lets every point cover a square of pixels: a pixel takes the nearest of the points that cover it.
-/// A point of size s at column p covers columns p - (s - 1) / 2 to p + s / 2; rows likewise. Rows and columns can be
-/// done one after the other, since a nearer point is never the smaller one.
+/// Lets every point cover a square of pixels; each pixel takes the nearest of the points that cover it. A point of size
+/// s at column p covers the columns p - (s - 1) / 2 to p + s / 2, and rows likewise. Columns and rows are done one
+/// after the other, which is right because a nearer point is never smaller.
 void dilate(VisibilityBuffer& buffer, const PointSizes& sizes, const ThreadPool& pool);
 
-/// Eye-dome lighting (Boucheny 2009): darkens a pixel by how far its eight neighbours stand in front of it,
-/// in log2 of the depth, so that the effect does not depend on the scene's scale. The background stays.
-/// Neighbours are as far away as points are wide, so that single points of a slope do not get outlines.
+/// Lights the picture by eye-dome lighting (Boucheny 2009): a pixel gets darker the farther its eight neighbours lie in
+/// front of it. Distances are differences of log2(depth), so the effect does not depend on the scale of the scene. The
+/// background stays. Neighbours are as far away as points are wide, so that single points of a slope get no outlines.
 /// `scratch` is memory to work in, of any size.
 void eyeDomeLighting(Picture& picture, float strength, const PointSizes& sizes, std::vector<float>& scratch,
                      const ThreadPool& pool);

@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kPixelsAhead = 32;
 constexpr std::size_t kRowsAtOnce = 16;
 
-/// How densely the pixels of an overdraw picture are covered: the count that gets the last colour.
+/// The count that gets the last colour of an overdraw picture.
 std::uint32_t largestCount(const std::vector<std::uint32_t>& counts) {
   return counts.empty() ? 1 : std::max(*std::max_element(counts.begin(), counts.end()), 2u);
 }
@@ -29,7 +29,7 @@ std::uint32_t meanColour(const ColourSum& sum) {
   return packColour(mean(sum.red()), mean(sum.green()), mean(sum.blue()));
 }
 
-/// Gives each pixel of the buffer its own colour, in no light and one pixel wide.
+/// Computes the colour of the point that each pixel of the buffer shows, without lighting.
 class Colouring {
  public:
   Colouring(const RenderList& list, const View& view, const DrawOptions& options, const VisibilityBuffer& buffer)
@@ -40,7 +40,8 @@ class Colouring {
     blended_ = !overdraw && options.shading == Shading::highQuality && buffer.sums.size() == buffer.pixels.size();
   }
 
-  /// Of pixels [begin, end). Points of one row are scattered in memory: some pixels' attributes are asked for ahead.
+  /// Colours pixels [begin, end). The points of a row are scattered in memory, so the attributes of several pixels are
+  /// prefetched before the first is used.
   void colour(std::size_t begin, std::size_t end, std::uint32_t* out) const {
     for (std::size_t i = begin; i < end; i += kPixelsAhead) {
       const std::size_t last = std::min(i + kPixelsAhead, end);
@@ -103,7 +104,7 @@ class Colouring {
   bool blended_ = false;
 };
 
-/// Of row y of `height`.
+/// The background colour of row y of a picture `height` rows high.
 std::uint32_t backgroundColour(const DrawOptions& options, int y, int height) {
   const glm::u8vec3 above = options.background, below = options.backgroundBelow.value_or(above);
   const double t = height > 1 ? static_cast<double>(y) / (height - 1) : 0.0;
@@ -111,7 +112,8 @@ std::uint32_t backgroundColour(const DrawOptions& options, int y, int height) {
   return packColour(mix(above.x, below.x), mix(above.y, below.y), mix(above.z, below.z));
 }
 
-/// Gives pixels [begin, end) their own index where their id is, so that dilation moves pixels, not points.
+/// Replaces the ids of pixels [begin, end) by the pixels' own indices, so that dilation moves pixels together with
+/// their colours. The ids go to the scratch memory.
 void pointAtPixels(VisibilityBuffer& buffer, std::size_t begin, std::size_t end) {
   for (std::size_t i = begin; i < end; ++i) {
     buffer.scratch.ids[i] = pixelId(buffer.pixels[i]);
@@ -139,8 +141,8 @@ void finishRow(const DrawnScene& drawn, const VisibilityBuffer& buffer, std::siz
   }
 }
 
-/// After floodFill(): the frame takes from the buffer, whose points are as large as asked for by now, what fills a
-/// pixel that is empty or farther away than kBlendDepth.
+/// After floodFill(): takes the pixels of the buffer, whose points have their full size by now, into the pixels of the
+/// picture that are empty or more than kBlendDepth farther away.
 void takeLargePoints(const VisibilityBuffer& buffer, const ThreadPool& pool, Picture& picture) {
   pool.parallelFor(buffer.pixels.size(), kRowsAtOnce * 1024, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {

@@ -7,8 +7,8 @@
 
 namespace strata {
 
-/// One pixel of a visibility buffer: bits of the depth, then the point's id. The smaller value is the one to see
-/// (Schütz 2022, Listing 1).
+/// One pixel of a visibility buffer: the bits of the depth in the upper half, the point's id in the lower. Of two
+/// values the smaller one is seen (Schütz 2022, Listing 1).
 using PackedPixel = std::uint64_t;
 
 constexpr PackedPixel packPixel(std::uint32_t depthBits, std::uint32_t id) { return PackedPixel{depthBits} << 32 | id; }
@@ -17,8 +17,8 @@ inline constexpr PackedPixel kEmptyPixel = packPixel(0x7f800000u, Picture::kNoPo
 constexpr std::uint32_t pixelId(PackedPixel pixel) { return static_cast<std::uint32_t>(pixel); }
 constexpr float pixelDepth(PackedPixel pixel) { return std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32)); }
 
-/// Colours of the points near a pixel's front, for their mean. Holds 2^24 points. Two sums a word, the first named in
-/// the lower half, so that a point takes two additions; in memory the words red, green, blue, count.
+/// Sums the colours of the points near a pixel's front, of up to 2^24 points. Each word holds two sums, the first named
+/// one in its lower half, so that a point takes two additions. In memory this is four words: red, green, blue, count.
 struct ColourSum {
   std::uint64_t redGreen = 0, blueCount = 0;
 
@@ -28,7 +28,7 @@ struct ColourSum {
   std::uint32_t count() const { return static_cast<std::uint32_t>(blueCount >> 32); }
 };
 
-/// What resolving works with, kept from frame to frame: fresh memory costs more than the work.
+/// Memory that resolving works in. It is kept from draw to draw, because fresh memory costs more than the work itself.
 struct ResolveScratch {
   std::vector<PackedPixel> pixels;
   std::vector<std::uint32_t> colours, ids;
@@ -36,17 +36,18 @@ struct ResolveScratch {
   std::vector<float> depths;
 };
 
-/// Gives `pixels` this size, in large pages where the system has them: the pixels of a batch lie in many rows, each in
-/// pages of its own. Empty pixels where the size changed; else nothing happens.
+/// Gives `pixels` the size `count` and empties them; nothing happens where they have this size already. They lie in
+/// large pages where the system has them, because the pixels of a batch are spread over many rows and thereby over many
+/// pages.
 void resizePixels(std::vector<PackedPixel>& pixels, std::size_t count);
 
-/// Row by row from the top.
+/// A picture before resolving: the point that each pixel shows. Row by row, row 0 on top.
 struct VisibilityBuffer {
   int width = 0;
   int height = 0;
   std::vector<PackedPixel> pixels{};
-  std::vector<ColourSum> sums{};        ///< Shading::highQuality: one a pixel; not read otherwise
-  std::vector<std::uint32_t> counts{};  ///< ColourMode::overdraw: points that fell on each pixel; likewise
+  std::vector<ColourSum> sums{};        ///< one per pixel; only for Shading::highQuality
+  std::vector<std::uint32_t> counts{};  ///< points that fell on each pixel; only for ColourMode::overdraw
   ResolveScratch scratch{};
 };
 

@@ -8,7 +8,7 @@
 namespace strata {
 namespace {
 
-constexpr double kSurePx = 0.05;  ///< more than float arithmetic moves a point
+constexpr double kSurePx = 0.05;  ///< pixels; float arithmetic moves a point by less
 
 glm::dvec3 boxMinFromEye(const ViewConstants& constants, const NodeData& node, const Batch& batch) {
   return (node.origin - constants.view.eye) + batch.boxMin;
@@ -20,6 +20,7 @@ double projectedSizePx(const ViewConstants& c, const NodeData& node, const Batch
   const double longest = std::max({batch.boxSize.x, batch.boxSize.y, batch.boxSize.z});
   if (c.view.orthographic) return longest * c.pixelsPerMetre;
   const glm::dvec3 lo = boxMinFromEye(c, node, batch);
+  // The corner of the box that is nearest along the view direction bounds how large any part of it may appear.
   double nearest = 0.0;
   for (int axis = 0; axis < 3; ++axis) {
     const double forward = c.projection.rowDepth[axis];
@@ -38,6 +39,7 @@ Precision batchPrecision(const ViewConstants& c, const NodeData& node, const Bat
 
 bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
   if (!gaze.on || node.batches.empty()) return true;
+  // The node counts as a sphere around its batches: its centre gives the distance from the gaze, its boxes the size.
   glm::dvec3 lo(std::numeric_limits<double>::infinity()), hi(-std::numeric_limits<double>::infinity());
   for (const Batch& batch : node.batches) {
     lo = glm::min(lo, boxMinFromEye(c, node, batch));
@@ -54,6 +56,7 @@ bool gazeKeeps(const ViewConstants& c, const Gaze& gaze, const NodeData& node) {
       glm::dvec2(gaze.at) * glm::dvec2(whole.width, whole.height) - glm::dvec2(c.view.tile.left, c.view.tile.top);
   const double away = glm::distance(pixel, at) / std::max(whole.height, 1);
   const double centrePx = static_cast<double>(gaze.centrePx), peripheryPx = static_cast<double>(gaze.peripheryPx);
+  // The threshold grows in three steps, at thirds of the picture's height (Schütz 2022, 3.6).
   const double least = away < 1.0 / 3.0 ? centrePx : away < 2.0 / 3.0 ? 0.5 * (centrePx + peripheryPx) : peripheryPx;
   const glm::dvec3 size = hi - lo;
   return std::max({size.x, size.y, size.z}) * c.pixelsPerMetre / (c.view.orthographic ? 1.0 : depth) >= least;
@@ -63,11 +66,12 @@ namespace {
 
 enum class Side { outside, partly, inside };
 
-/// Of a box given by its corners, both relative to the eye, against planes that point inwards.
+/// The side on which a box lies of planes that point inwards; box and planes are relative to the eye.
 template <typename Planes>
 Side sideOf(const Planes& planes, const glm::dvec3& lo, const glm::dvec3& hi) {
   Side side = Side::inside;
   for (const glm::dvec4& plane : planes) {
+    // Values of the plane at the box's outermost and innermost corners.
     double nearest = plane.w, farthest = plane.w;
     for (int axis = 0; axis < 3; ++axis) {
       nearest += std::min(plane[axis] * lo[axis], plane[axis] * hi[axis]);
@@ -79,7 +83,8 @@ Side sideOf(const Planes& planes, const glm::dvec3& lo, const glm::dvec3& hi) {
   return side;
 }
 
-/// The clip region relative to the eye.
+/// The clip region relative to the eye. Sides are ordered outside < partly < inside, so the union of boxes is a
+/// maximum, and intersections are minima.
 struct EyeClip {
   EyeClip(const Clip& clip, const glm::dvec3& eye) {
     for (const Box& box : clip.boxes) boxes.push_back({box.min - eye, box.max - eye});
@@ -108,7 +113,7 @@ struct EyeClip {
   std::vector<glm::dvec4> planes;
 };
 
-/// The image and the near plane, smaller by what rounding may move a point.
+/// The planes of the image and the near plane, moved inwards by as much as rounding may move a point.
 std::array<glm::dvec4, 5> surePlanes(const ViewConstants& c) {
   const Projection& p = c.projection;
   const glm::dvec4 nearest(0.0, 0.0, 0.0, 1.0001 * c.view.nearPlane);

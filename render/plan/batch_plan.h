@@ -10,20 +10,21 @@
 
 namespace strata {
 
-/// False for a node that DrawOptions::gaze leaves out.
+/// False for a node that DrawOptions::gaze leaves out, because it is seen too small for its distance from the gaze.
 bool gazeKeeps(const ViewConstants& constants, const Gaze& gaze, const NodeData& node);
 
-/// Upper bound of the pixels that the longest side of the batch's box covers. The box is the one of 2^bits grid
-/// steps, because its 1024th part is what a 10-bit coordinate resolves.
+/// An upper bound on the pixels that the longest side of the batch's box covers. The box has sides of 2^bits grid
+/// steps, and a 10-bit coordinate resolves a 1024th of a side.
 double projectedSizePx(const ViewConstants& constants, const NodeData& node, const Batch& batch);
 
 inline constexpr double kPixelsAt10Bits = 500.0;
 inline constexpr double kPixelsAt20Bits = 500.0 * 1024.0;
-/// Schütz 2022, 3.3: 10 bits below 500 pixels, 20 below 500 * 1024, else 30; half a cell is then less than a quarter
-/// of a pixel. Never more planes than the node has, nor than the batch's bits fill.
+/// The precision that a batch is drawn with: 10 bits below 500 pixels, 20 below 500 * 1024, else 30 (Schütz 2022, 3.3).
+/// Half a cell is then less than a quarter of a pixel. It never takes more planes than the node has loaded, nor more
+/// than the batch's bits fill.
 Precision batchPrecision(const ViewConstants& constants, const NodeData& node, const Batch& batch);
 
-/// One batch that survived culling, cut to the prefix that its item asks for.
+/// A batch that is drawn, cut to the prefix that its item asks for.
 struct PlannedBatch {
   const NodeData* node = nullptr;
   std::uint32_t item = 0;        ///< index into RenderList::items
@@ -31,11 +32,12 @@ struct PlannedBatch {
   std::uint32_t pointCount = 0;
   std::uint32_t firstId = 0;
   Precision precision = Precision::low10;
-  bool clipped = false;  ///< part of it may be outside DrawOptions::clip: its points are to be tested
-  bool inside = false;   ///< every point is in the image, whatever rounding does: nothing to be tested
+  bool clipped = false;  ///< some of its points may lie outside DrawOptions::clip, so each must be tested
+  bool inside = false;   ///< every point lies in the image, whatever rounding does, so none must be tested
   GridMapping mapping;
 };
 
+/// The batches of a list that one view draws.
 struct DrawPlan {
   ViewConstants constants;
   std::vector<GridTransform> grids;
@@ -44,9 +46,10 @@ struct DrawPlan {
   std::uint32_t batchesCulled = 0;         ///< outside the frustum or the clip region, or below the gaze's threshold
   std::uint32_t batchesAt[3] = {0, 0, 0};  ///< by precision
 };
-/// Culls, cuts and chooses precisions. The plan points into the list's nodes.
+/// Decides which batches of `list` are drawn, how many points of each, and with which precision. The plan points into
+/// the list's nodes. Its memory is used again from call to call.
 void planBatches(const RenderList& list, const View& view, const DrawOptions& options, DrawPlan& plan);
-/// The counts of a plan that is drawn whole.
+/// The stats of drawing a whole plan, without times.
 DrawStats planStats(const DrawPlan& plan);
 
 }  // namespace strata

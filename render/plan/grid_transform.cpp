@@ -7,8 +7,8 @@ namespace strata {
 namespace {
 
 constexpr double kLargestFloat = 1e30;    ///< beyond it products of floats may overflow
-constexpr double kLargestSteps = 1.0e15;  ///< that a double counts exactly, with room
-constexpr std::size_t kMostGrids = 64;    ///< stores in one list; what comes after them has grids of its own
+constexpr double kLargestSteps = 1.0e15;  ///< steps that a double counts exactly, with room to spare
+constexpr std::size_t kMostGrids = 64;    ///< grids that batches share; further batches have grids of their own
 
 bool usable(const glm::vec4& row) {
   for (int i = 0; i < 4; ++i)
@@ -30,6 +30,7 @@ const GridFinder::Grid* GridFinder::find(const glm::dvec3& step, const glm::dvec
     const glm::dvec3 off = glm::abs(steps - glm::round(steps));
     if (countable(steps) && std::max({off.x, off.y, off.z}) < kOffGrid) return &grid;
   }
+  // A new grid: E is the point of the grid next to the eye, so that d is smallest, and exact, where it matters most.
   const glm::dvec3 eyeCell = glm::round((constants_.view.eye - corner) / step);
   if (known_.size() >= kMostGrids || !countable(eyeCell)) return nullptr;
   if (!addTransform(step, (corner - constants_.view.eye) + eyeCell * step)) return nullptr;
@@ -38,6 +39,7 @@ const GridFinder::Grid* GridFinder::find(const glm::dvec3& step, const glm::dvec
 }
 
 bool GridFinder::addTransform(const glm::dvec3& step, const glm::dvec3& rest) {
+  // A row for metres from the eye becomes one for steps from E: scaled by the step, with E's own value as the base.
   const auto fold = [&](const glm::dvec4& row) {
     const glm::dvec3 direction(row);
     return glm::vec4(glm::dvec4(direction * step, glm::dot(direction, rest) + row.w));
@@ -48,7 +50,7 @@ bool GridFinder::addTransform(const glm::dvec3& step, const glm::dvec3& rest) {
   t.depth = fold(constants_.projection.rowDepth);
   if (!usable(t.x) || !usable(t.y) || !usable(t.depth)) return false;
   const glm::dvec3 origin = constants_.view.eye + rest;
-  const glm::dvec3 least = glm::max(step, 1e-300);
+  const glm::dvec3 least = glm::max(step, 1e-300);  // a flat box has steps of 0
   const auto inSteps = [&](const Box& box) {
     return ClipSteps{glm::vec3((box.min - origin) / least), glm::vec3((box.max - origin) / least)};
   };
@@ -77,6 +79,7 @@ std::optional<GridMapping> GridFinder::map(const NodeData& node, const Batch& ba
   for (int axis = 0; axis < 3; ++axis) {
     if (!(std::abs(first[axis]) + steps[axis] < kLargestOffset)) return mapAlone(node, batch, precision);
     mapping.shift[axis] = batch.bits[axis] - 10 * static_cast<int>(precision);
+    // A coordinate with fewer bits than the grid stands for a cell of 2^shift steps, and its point lies in the middle.
     const int half = mapping.shift[axis] > 0 ? 1 << (mapping.shift[axis] - 1) : 0;
     mapping.offset[axis] = static_cast<int>(first[axis]) + half;
   }
@@ -92,11 +95,11 @@ std::optional<GridMapping> GridFinder::mapAlone(const NodeData& node, const Batc
   for (int axis = 0; axis < 3; ++axis) {
     cell[axis] = batch.boxSize[axis] / cells;
     const double half = batch.bits[axis] > bits ? 0.5 : 0.0;
-    const double first = lo[axis] + half * cell[axis];  // of X = 0
+    const double first = lo[axis] + half * cell[axis];  // position of X = 0
     double eyeCell = cell[axis] > 0.0 ? std::round(-first / cell[axis]) : 0.0;
     eyeCell = std::clamp(eyeCell, -0.9 * cells, 1.9 * cells);
     if (!std::isfinite(eyeCell)) return std::nullopt;
-    eyeCell = std::round(eyeCell);  // X - E then fits 32 bits
+    eyeCell = std::round(eyeCell);  // clamped above, so X - E fits 32 bits
     mapping.offset[axis] = -static_cast<int>(eyeCell);
     rest[axis] = first + eyeCell * cell[axis];
   }

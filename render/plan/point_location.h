@@ -7,14 +7,15 @@
 
 namespace strata {
 
-/// Where a point lies.
+/// The node and the item of the list that a point belongs to.
 struct PointLocation {
   const NodeData* node = nullptr;
-  std::uint32_t index = 0;
-  std::size_t item = 0;  ///< of the list
+  std::uint32_t index = 0;  ///< within the node
+  std::size_t item = 0;     ///< into RenderList::items
 };
 
-/// Finds the node of an id: a table says which items a block of ids meets, a search among those finishes.
+/// Finds the node that a point id of a list belongs to. A table tells which items each block of 4096 ids spans, and a
+/// search among those finds the one.
 class PointFinder {
  public:
   explicit PointFinder(const RenderList& list) {
@@ -45,11 +46,11 @@ class PointFinder {
 
  private:
   static constexpr std::uint32_t kBlock = 4096;
-  static constexpr std::size_t kFewItems = 8;  ///< quicker one by one
+  static constexpr std::size_t kFewItems = 8;  ///< up to so many are searched one by one, which is quicker
 
   std::vector<const NodeData*> nodes_;
   std::vector<std::uint32_t> starts_{0};  ///< first id of each item, then the end
-  std::vector<std::uint32_t> itemAt_;     ///< of the first id of each block; the last item at the end
+  std::vector<std::uint32_t> itemAt_;     ///< the item of each block's first id; at the end the last item
 };
 
 }  // namespace strata

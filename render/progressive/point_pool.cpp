@@ -10,12 +10,12 @@
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kMostGroups = 65535;  ///< in one dispatch, which OpenGL guarantees
-constexpr std::uint32_t kSlack = 32;          ///< this part of a pool that is too small stays free, for blocks to fit
-constexpr std::uint32_t kCached = 4;          ///< what is shown and this part of it is kept close together
-constexpr std::uint32_t kPrintEvery = 16;     ///< point whose first word the fingerprint takes in
+constexpr std::uint32_t kMostGroups = 65535;  ///< the work-groups that OpenGL guarantees in one dispatch
+constexpr std::uint32_t kSlack = 32;          ///< a 32nd of a pool that is too small stays free, so that blocks fit
+constexpr std::uint32_t kCached = 4;       ///< room for a quarter more than what is shown keeps what was shown before
+constexpr std::uint32_t kPrintEvery = 16;  ///< the fingerprint takes in the first word of every 16th point
 
-/// How many of `wanted` points there is room for.
+/// The number of points, `wanted` at most, that four of the driver's storage blocks hold.
 std::uint32_t roomFor(const GlFunctions& gl, std::uint64_t wanted) {
   const std::uint64_t block = std::min(largestStorageBlock(gl), std::uint64_t{1} << 33);
   const std::uint64_t room = std::min({wanted, STRATA_POOL_PAGES * (block / sizeof(glm::uvec4)), block / 4});
@@ -41,7 +41,7 @@ std::size_t batchIndex(const NodeData& node, std::uint32_t firstPoint) {
   return static_cast<std::size_t>(after - node.batches.begin()) - 1;
 }
 
-/// For each index of the pool its place, which lies in the same band.
+/// The place of each index of the pool. It lies in the same band as the index.
 std::vector<std::uint32_t> permutation(const std::vector<PoolSchedule::Band>& bands, std::uint32_t key,
                                        const ThreadPool& threads) {
   std::vector<std::uint32_t> places(bands.back().end);
@@ -108,7 +108,8 @@ std::uint64_t PointPool::fingerprint(const std::shared_ptr<const NodeData>& node
   return print.value();
 }
 
-/// A node that a list names twice, or a copy of it, is another one.
+/// The pool's node for `data`. A list may name a node twice, or a node and its copy; the second gets the next free
+/// fingerprint, so that each has pieces of its own.
 PointPool::Node& PointPool::nodeOf(const std::shared_ptr<const NodeData>& data) {
   std::uint64_t print = fingerprint(data);
   for (;; ++print) {
@@ -155,7 +156,8 @@ void PointPool::findWanted(const RenderList& list, const DrawPlan& plan) {
   }
 }
 
-/// Puts what the pool has room for in front. Returns how much of wanted_ that is.
+/// Moves the pieces that the pool has room for to the front of wanted_, and returns how many they are. The pieces are
+/// ordered by their share, so that the same share of every node stays out.
 std::size_t PointPool::fitting() {
   std::uint64_t points = 0;
   for (const Wanted& wanted : wanted_) points += wanted.points;
@@ -170,7 +172,8 @@ std::size_t PointPool::fitting() {
   return static_cast<std::size_t>(end - wanted_.begin());
 }
 
-/// New pieces come into as little of the pool as the first `fits` of wanted_ need, so that a turn is short.
+/// Limits new pieces to a part of the pool not much larger than the first `fits` of wanted_ need, so that a turn is
+/// short.
 void PointPool::limitTo(std::size_t fits) {
   std::uint64_t points = 0;
   for (std::size_t w = 0; w < fits; ++w) points += wanted_[w].points;
@@ -178,7 +181,7 @@ void PointPool::limitTo(std::size_t fits) {
   manager_.setLimit(static_cast<std::uint32_t>(std::min<std::uint64_t>(bands * band, size())));
 }
 
-/// Whether a piece of the pool lacks planes or classes that its node has by now.
+/// True when a piece in the pool lacks planes or classes that are needed and that its node has by now.
 bool PointPool::isOld(const Wanted& wanted, bool classes) const {
   const Slot& slot = slots_[wanted.node->slots[wanted.piece]];
   return slot.planes < static_cast<int>(wanted.batch->precision) ||
@@ -208,6 +211,7 @@ PoolUpdate PointPool::show(const RenderList& list, const DrawPlan& plan, bool cl
   limitTo(fits);
   std::stable_sort(missing.begin(), missing.end(),
                    [](const Wanted* a, const Wanted* b) { return a->share < b->share; });
+  // Once the pool is full or the frame's budget is used up, pieces that are only rewritten may still pass.
   bool full = false;
   for (const Wanted* piece : missing) {
     const bool within = staged_.empty() || staged_.size() + piece->points <= mostPoints;
@@ -230,7 +234,7 @@ PoolUpdate PointPool::show(const RenderList& list, const DrawPlan& plan, bool cl
   return result;
 }
 
-/// A slot and a block for a piece. False where there is none.
+/// Finds a slot and a block for a piece. False where there is none.
 bool PointPool::makeRoom(const Wanted& missing) {
   if (freeSlots_.empty()) {
     if (slots_.size() >= kNoSlot) return false;
@@ -274,7 +278,8 @@ void PointPool::stage(const PlannedBatch& batch, std::uint32_t first, std::uint3
   }
 }
 
-/// How the frame sees the piece that begins `first` points into the batch, with the planes that are in the pool.
+/// Enters in the table by slot how the view sees the piece that begins `first` points into the batch. The pool may have
+/// fewer planes of it than the plan counts on; then each coordinate covers 10 bits more of the grid.
 void PointPool::setPiece(std::uint32_t slot, const PlannedBatch& batch, std::uint32_t first) {
   const int wanted = static_cast<int>(batch.precision), planes = std::min(wanted, slots_[slot].planes);
   shader::PoolPiece& piece = pieces_[slot];

@@ -15,33 +15,34 @@
 
 namespace strata {
 
-/// What one frame wants of the pool and what came of it.
+/// What one call of PointPool::show() did.
 struct PoolUpdate {
-  std::uint32_t nodesMissing = 0;  ///< nodes of the list of which something is seen that is not in the pool
+  std::uint32_t nodesMissing = 0;  ///< nodes of the list with visible points that are not in the pool
   std::uint64_t pointsWritten = 0;
-  bool rewritten = false;  ///< pieces that pixels may show have been written again
+  bool rewritten = false;  ///< true when pieces that pixels may show have been written again
 };
 
-/// Points of nodes at shuffled places of GPU memory (Rumpler 2019, 3.1 to 3.4). A node comes in pieces of one batch
-/// each, so that no more of it has to be there than the prefix that is seen. A point is its node's words and the slot
-/// of its piece; where the piece stands, and whether it is drawn, is in a table by slot that is made anew for each
-/// frame. So points do not depend on an origin, and those of a freed piece are no longer drawn from that frame on. What
-/// is left of them, his ghosts, is removed while the pool goes round once; only then is the slot used again.
+/// Keeps points of nodes at shuffled places of GPU memory (Rumpler 2019, 3.1 to 3.4). A node comes in pieces, each a
+/// quarter of a batch at most, so that little more of it is in the pool than the prefix that is seen. A point consists
+/// of the node's words and the slot of its piece. A table by slot, which is made anew for each frame, tells where the
+/// piece lies in space and how much of it is drawn. So points do not depend on an origin, and a freed piece is not
+/// drawn from the same frame on. What is left of its points in the pool (Rumpler's ghosts) is removed during one turn
+/// of the schedule, and only then the slot is used again.
 class PointPool {
  public:
   static constexpr std::uint32_t kPiecePoints = 2560;  ///< a quarter of a batch
 
-  /// Room for as many of `points` as the driver's storage blocks hold, four pages at most; a warning where that is
-  /// less. Throws Error where there is no memory or a shader does not compile.
+  /// Makes room for `points` points, or for as many as four of the driver's storage blocks hold, with a warning. `key`
+  /// selects the shuffle. Throws Error where memory is missing or a shader does not compile.
   PointPool(const GlFunctions& functions, std::uint64_t points, std::uint32_t key, std::uint32_t groupSize,
             const ThreadPool& threads);
 
-  /// Takes what `plan` of `list` shows into the pool, at most `mostPoints` now (a first piece always passes), the first
-  /// parts of all nodes before later ones. Where the view shows more than the pool holds, the last parts of all nodes
-  /// stay out, as large a share of each: they give way to the first part of a node that comes into view, and are drawn
-  /// as long as nothing does. `classes`: they are needed.
+  /// Takes the points that `plan` of `list` shows into the pool, but at most `mostPoints` in this frame; a first piece
+  /// always passes. The first pieces of all nodes come before later ones. Where the view shows more than the pool
+  /// holds, the same share of each node's last pieces stays out. Such pieces are drawn as long as they are there, and
+  /// give way to the first pieces of a node that comes into view. `classes` says whether points need their classes.
   PoolUpdate show(const RenderList& list, const DrawPlan& plan, bool classes, std::uint64_t mostPoints);
-  /// Which places the fill pass meets next; of pages, see below.
+  /// The schedule of the fill pass. Its places lie in pages of pagePoints() each.
   PoolSchedule& schedule() { return schedule_; }
   const PoolSchedule& schedule() const { return schedule_; }
 
@@ -53,20 +54,21 @@ class PointPool {
 
   void bindPage(std::uint32_t page, unsigned binding) const { pages_[page]->bindStorage(binding); }
   void bindPieces(unsigned binding) const { pieceBuffer_.bindStorage(binding); }
-  /// After show() with `rewritten`: the points of `pixels` pixels are fetched anew where they have to be.
+  /// After show() has set PoolUpdate::rewritten: fetches the points that `pixels` pixels of `kept` show once more,
+  /// where their pieces were written again.
   void fetchAgain(const GlBuffer& kept, std::uint32_t pixels);
 
  private:
   static constexpr std::uint32_t kNoSlot = (1u << STRATA_SLOT_BITS) - 1u;
 
   struct Node {
-    std::vector<std::uint32_t> firstPiece;  ///< of each batch
-    std::vector<std::uint32_t> slots;       ///< of each piece; kNoSlot where it is not there
-    std::uint32_t held = 0;
-    std::uint64_t frame = 0;
+    std::vector<std::uint32_t> firstPiece;  ///< the number of each batch's first piece
+    std::vector<std::uint32_t> slots;       ///< the slot of each piece; kNoSlot where it is not in the pool
+    std::uint32_t held = 0;                 ///< pieces in the pool
+    std::uint64_t frame = 0;                ///< the last frame that listed the node
   };
   struct Slot {
-    Node* node = nullptr;  ///< null: free or dead
+    Node* node = nullptr;  ///< null: the slot is free or a ghost
     std::uint32_t piece = 0;
     PoolManager::Block block{};
     int planes = 0;
@@ -82,7 +84,7 @@ class PointPool {
     std::uint32_t piece;
     std::uint32_t first;   ///< within the batch
     std::uint32_t points;  ///< of the whole piece
-    float share;           ///< of what is seen of the node, that comes before it
+    float share;           ///< the share of the node's visible points that come before it
   };
 
   void beginFrame();

@@ -6,52 +6,51 @@
 
 namespace strata {
 
-/// How the fill pass goes round a pool (Rumpler 2019, 3.5.2), so many places a frame. His goes over all of it, whatever
-/// the view shows of it. Here the pool lies in bands, and only those are gone over of which the frame shows a point or
-/// that hold ghosts (points of freed blocks), all of them in equal shares: a turn is as long as they are together.
-/// Each place of them is met once a turn.
+/// Decides which places of a pool each frame visits (Rumpler 2019, 3.5.2). His schedule goes round the whole pool. Here
+/// the pool is divided into bands, and a turn visits only the bands that the frame shows a point of, or that hold
+/// ghosts (points of freed blocks). It visits them in equal shares, and each of their places once.
 class PoolSchedule {
  public:
   struct Band {
-    std::uint32_t first = 0, end = 0;  ///< places, and indices: a permutation stays within its band
+    std::uint32_t first = 0, end = 0;  ///< places, and also indices, because the shuffle stays within a band
   };
   static constexpr std::uint32_t kBands = 32;
-  static constexpr std::uint32_t kLeastBand = 4096;  ///< places
+  static constexpr std::uint32_t kLeastBand = 4096;  ///< places of the smallest band
 
-  /// One band alone for `bands` 1.
+  /// Divides `size` places into at most `bands` bands.
   explicit PoolSchedule(std::uint32_t size, std::uint32_t bands = kBands);
 
   std::vector<Band> bands() const;
-  std::uint32_t bandPlaces() const { return bandPlaces_; }  ///< of each but the last
+  std::uint32_t bandPlaces() const { return bandPlaces_; }  ///< places of every band except the last
 
-  /// Nothing is shown of any band. Appends to `slots` those that freed() took and that have no ghosts any more.
+  /// Begins a frame that shows nothing yet. Appends to `slots` those given to freed() that have no ghosts any more.
   void beginFrame(std::vector<std::uint32_t>& slots);
-  /// The frame shows indices [first, first + count), count at least 1.
+  /// Says that the frame shows the indices [first, first + count); count is at least 1.
   void shown(std::uint32_t first, std::uint32_t count);
-  /// The block at these indices belongs to nobody now; its points carry `slot`, which is no ghost yet.
+  /// Says that the block at these indices was freed. Its points carry `slot`, which must not be a ghost yet.
   void freed(std::uint32_t slot, std::uint32_t first, std::uint32_t count);
-  /// By slot: bands that still have to be gone over.
+  /// For each slot that is a ghost, the number of bands that must still be visited.
   const std::unordered_map<std::uint32_t, std::uint32_t>& ghosts() const { return ghosts_; }
 
-  /// The picture is another: all places of the turn are still to be met.
+  /// Begins a new turn, because the picture has changed.
   void restart();
-  std::uint64_t places() const;   ///< of a turn
-  std::uint64_t pending() const;  ///< of them, those that the picture has not met
-  /// The next `count` places, at most pending().
+  std::uint64_t places() const;   ///< places of a whole turn
+  std::uint64_t pending() const;  ///< places that this turn has not visited yet
+  /// Visits the next `count` places, at most pending(), and returns them as ranges.
   std::vector<Band> next(std::uint64_t count);
 
  private:
   struct Ghost {
     std::uint32_t slot;
-    std::uint64_t until;  ///< of Round::turned
+    std::uint64_t until;  ///< the band is free of these points once `turned` has reached this
   };
   struct BandState {
     Band range;
-    std::uint32_t cursor = 0;   ///< place at which the next frame goes on
-    std::uint32_t pending = 0;  ///< places
-    std::uint64_t turned = 0;   ///< places gone over, ever
+    std::uint32_t cursor = 0;   ///< the place where the next frame goes on
+    std::uint32_t pending = 0;  ///< places not visited in this turn
+    std::uint64_t turned = 0;   ///< places visited since the beginning
     bool shown = false;
-    std::deque<Ghost> ghosts;  ///< ascending by until
+    std::deque<Ghost> ghosts;  ///< by ascending `until`
 
     std::uint32_t size() const { return range.end - range.first; }
     bool counts() const { return shown || !ghosts.empty(); }

@@ -17,7 +17,7 @@ namespace strata {
 namespace {
 
 enum Pass : std::size_t { kDepth = 0, kIndex = 1, kKeep = 2, kPasses = 3 };  // STRATA_PASS of progressive.comp
-constexpr std::uint32_t kPointsOfThread = 32;                                // likewise
+constexpr std::uint32_t kPointsOfThread = 32;                                // kPoints of progressive.comp
 
 /// A fingerprint of everything that decides a picture: two frames with the same key show the same points in the same
 /// pixels.
@@ -48,7 +48,7 @@ std::uint64_t pictureKey(const View& view, const DrawOptions& options, const Dra
   return key.value();
 }
 
-/// Points [first, end) of one page.
+/// The points [first, end) of one page.
 struct Range {
   std::uint32_t page, first, end;
 };
@@ -72,7 +72,7 @@ class Progressive final : public ProgressiveRasterizer {
         stamps_{GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_),
                 GlTimestamp(gl_), GlTimestamp(gl_), GlTimestamp(gl_)},
         mostPixels_(largestStorageBlock(gl_) / sizeof(glm::uvec4)) {
-    passes_[kDepth].get({});  // now, so that a driver that cannot is found out when the rasterizer is made
+    passes_[kDepth].get({});  // compiled now, so that a driver that cannot is noticed in the constructor
     stats_.poolPoints = points_.size();
     stats_.poolFree = points_.size();
   }
@@ -120,7 +120,7 @@ class Progressive final : public ProgressiveRasterizer {
   }
 
  private:
-  /// Nothing is known of any pixel.
+  /// Forgets what the pixels show, so that the next frame begins anew.
   void forget() {
     kept_[source_].fill(STRATA_NO_POINT);
     covered_ = 0;
@@ -147,7 +147,7 @@ class Progressive final : public ProgressiveRasterizer {
     forget();
   }
 
-  /// The next `count` places of the pool, page by page.
+  /// The next `count` places of the pool, split at the ends of pages.
   std::vector<Range> nextRanges(std::uint64_t count) {
     std::vector<Range> ranges;
     const std::uint32_t pagePoints = points_.pagePoints();
@@ -207,7 +207,7 @@ class Progressive final : public ProgressiveRasterizer {
     source_ = 1 - source_;
   }
 
-  /// Returns the word after its candidates.
+  /// Dispatches one pass over `range`, whose candidates begin at `word`. Returns the word behind them.
   std::uint32_t dispatch(const Range& range, std::uint32_t word) {
     const std::uint32_t groups = groupsFor(range.end - range.first);
     gl_.Uniform3ui(STRATA_UNIFORM_RANGE, range.first, range.end, word);
@@ -215,13 +215,14 @@ class Progressive final : public ProgressiveRasterizer {
     return word + groups * groupSize_;
   }
 
-  /// OpenGL on the CPU runs a dispatch before it returns, but its timestamps stand where it draws.
+  /// Marks the end of a step. Software OpenGL runs a dispatch before the call returns, but puts timestamps off until it
+  /// draws; so the wall time of each step is kept as well.
   void mark(std::size_t stamp) {
     stamps_[stamp].record();
     lapMs_[stamp] = lap_.lapMs();
   }
 
-  /// One pass, for any grids or for one alone.
+  /// The programs of one pass, either for any number of grids or for a single one.
   ProgramCache programs(int pass, bool oneGrid) const {
     return {gl_,
             {{gl::kComputeShader,
@@ -237,7 +238,7 @@ class Progressive final : public ProgressiveRasterizer {
     gridBuffer_.assign(grids.data(), grids.size() * sizeof(shader::GridRecord));
   }
 
-  /// Of the program in use.
+  /// Sets the uniforms of the program in use.
   void setUniforms(const DrawOptions& options) const {
     if (plan_.grids.size() == 1) {
       const glm::vec4 rows[3] = {plan_.grids[0].x, plan_.grids[0].y, plan_.grids[0].depth};
@@ -299,15 +300,15 @@ class Progressive final : public ProgressiveRasterizer {
   const GlDevice device_;
   const GlFunctions& gl_;
   const std::uint32_t groupSize_;
-  std::array<ProgramCache, 2 * kPasses> passes_;  ///< for any grids, then for one
+  std::array<ProgramCache, 2 * kPasses> passes_;  ///< for any number of grids, then for one
   PointPool points_;
   GlFlood flood_{gl_, groupSize_};
   GlBuffer gridBuffer_, depths_, ids_, candidates_;
-  std::array<GlBuffer, 2> kept_;  ///< the points that the pixels show: of the last frame, of this one
+  std::array<GlBuffer, 2> kept_;  ///< the points that the pixels show, in the last frame and in this one
   std::array<GlTimestamp, 6> stamps_;
-  const std::uint64_t mostPixels_;  ///< that a storage block holds
+  const std::uint64_t mostPixels_;  ///< pixels that a storage block holds
   Stopwatch lap_;
-  std::array<double, 6> lapMs_{};  ///< from the stamp before
+  std::array<double, 6> lapMs_{};  ///< wall time since the stamp before
   std::size_t source_ = 0;         ///< which of kept_ is the last frame's
   DrawPlan plan_;
   VisibilityBuffer buffer_;
@@ -315,7 +316,7 @@ class Progressive final : public ProgressiveRasterizer {
   ProgressiveStats stats_;
   std::uint64_t key_ = 0;
   std::uint64_t covered_ = 0;  ///< pixels of the last frame that have a point
-  std::size_t pixels_ = 0;     ///< of this frame; 0: nothing is drawn
+  std::size_t pixels_ = 0;     ///< pixels of this frame; 0: nothing is drawn
   bool warned_ = false;
 };
 

@@ -4,12 +4,13 @@
 
 namespace strata {
 
-// Where the points of a pool lie: index i of [0, size) goes to place shuffled(i). Both ways are bijections, so that a
-// consecutive range of indices, which the memory manager hands out, owns places of its own all over the pool.
+// The points of a pool lie shuffled: the point with index i of [0, size) lies at place shuffled(i). The shuffle is a
+// bijection, so a range of indices, which the memory manager hands out, owns places all over the pool.
 
-/// A bijection for any size, another for each key: a Feistel network over the smallest power of two that holds the
-/// size, walked on until it falls inside (Black and Rogaway 2002, "Ciphers with Arbitrary Finite Domains"); less than
-/// two turns on average. Halves differ by a bit where the power is odd. No security is asked of it.
+/// A bijection for any size, a different one for each key. It is a Feistel network over the smallest power of two that
+/// holds the size, applied again until its result lies inside, less than twice on average (Black and Rogaway 2002,
+/// "Ciphers with Arbitrary Finite Domains"). The halves differ by one bit where the power is odd. It need not be
+/// secure.
 class KeyedShuffle {
  public:
   KeyedShuffle(std::uint32_t size, std::uint32_t key) : size_(size), key_(key) {
@@ -19,7 +20,7 @@ class KeyedShuffle {
     highMask_ = (1u << (bits - lowBits_)) - 1u;
   }
 
-  /// `i` < size.
+  /// The place of index `i`, which is less than the size.
   std::uint32_t operator()(std::uint32_t i) const {
     do i = encipher(i);
     while (i >= size_);

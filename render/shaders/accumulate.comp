@@ -1,17 +1,17 @@
-// High-quality shading (Schütz, Kerbl, Wimmer 2021): sums the colours of the points at most a hundredth behind the front, when
-// the visibility buffer has the front depths. With STRATA_COUNT it counts all points of a pixel instead (overdraw).
+// High-quality shading (Schütz, Kerbl, Wimmer 2021): once the front depths are known, sums the colours of the points
+// that lie at most a hundredth behind the front. With STRATA_COUNT it counts all points of a pixel instead (overdraw).
 layout(std430, binding = STRATA_BINDING_DEPTH) readonly buffer Depths { uint depths[]; };
 layout(std430, binding = STRATA_BINDING_MORE) buffer Sums { uint sums[]; };
 
 layout(location = STRATA_UNIFORM_PRECISIONS) uniform uvec3 precisions;
 
-const float kBlendDepth = 1.01;             // DrawOptions::kBlendDepth
-const uint kMostPoints = 0xffff00u;         // of a pixel: their sum fits 32 bits, with room for threads that race
+const float kBlendDepth = 1.01;      // DrawOptions::kBlendDepth
+const uint kMostPoints = 0xffff00u;  // points of a pixel whose sum fits 32 bits, with room for threads that race
 
 bool visit(uvec3 words, uint point) {
   for (int view = 0; view < STRATA_VIEWS; ++view) {
     uint depth;
-    int pixel = placePoint(view, words, depth);
+    int pixel = pixelOf(view, words, depth);
     if (pixel < 0) continue;
 #if STRATA_COUNT
     atomicAdd(sums[pixel], 1u);

@@ -1,7 +1,7 @@
-// The arithmetic of batch_plan.h.
+// The arithmetic of plan/grid_transform.h.
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer Page { uint page[]; };
 layout(std430, binding = STRATA_BINDING_RECORDS) readonly buffer Records { BatchRecord records[]; };
-layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) readonly buffer Places { BatchView places[]; };
+layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) readonly buffer BatchViews { BatchView batchViews[]; };
 layout(std430, binding = STRATA_BINDING_GRIDS) readonly buffer Grids { GridRecord grids[]; };
 
 layout(location = STRATA_UNIFORM_VIEWPORT) uniform vec4 viewports[STRATA_VIEWS];
@@ -9,18 +9,18 @@ layout(location = STRATA_UNIFORM_LENS) uniform vec4 lenses[STRATA_VIEWS];
 layout(location = STRATA_UNIFORM_CLASSES) uniform uint classes[8];
 layout(location = STRATA_UNIFORM_CLIPS) uniform ivec3 clips;
 
-/// One batch as one view sees it.
+/// One batch as one view sees it, unpacked.
 struct Seen {
   vec4 x, y, depth;
   ivec3 offset;
-  uvec3 left, right;  // shifts
+  uvec3 left, right;  // shifts, of which one is 0
   int planes;         // 0: not seen
   int grid;           // -1: its points need no test against the clip region
 };
 
 Seen seenBy(uint record, int view) {
-  ivec4 offset = places[record * STRATA_VIEWS + view].offset;
-  ivec4 shift = places[record * STRATA_VIEWS + view].shift;
+  ivec4 offset = batchViews[record * STRATA_VIEWS + view].offset;
+  ivec4 shift = batchViews[record * STRATA_VIEWS + view].shift;
   int grid = shift.w >> 1;
   Seen seen;
   seen.x = grids[grid].x;
@@ -38,7 +38,7 @@ uvec3 appendBits(uvec3 cell, uint word) { return cell << 10 | (uvec3(word, word 
 
 float along(vec4 row, vec3 d) { return fma(d.x, row.x, fma(d.y, row.y, fma(d.z, row.z, row.w))); }
 
-/// Grid steps from the eye's cell: d of batch_plan.h. A word a plane.
+/// d, the grid steps from E. `words` has one word per plane.
 vec3 gridSteps(Seen seen, uvec3 words) {
   uvec3 cell = appendBits(uvec3(0u), words.x);
   if (seen.planes > 1) cell = appendBits(cell, words.y);
@@ -46,7 +46,7 @@ vec3 gridSteps(Seen seen, uvec3 words) {
   return vec3(ivec3(cell << seen.left >> seen.right) + seen.offset);
 }
 
-/// Column and row in pixels of the whole picture, depth in metres.
+/// Column and row in pixels of the whole picture, and depth in metres.
 vec3 project(Seen seen, int view, vec3 d) {
   float depth = along(seen.depth, d);
   float inverse = lenses[view].y != 0.0 ? 1.0 / depth : 1.0;
@@ -54,16 +54,17 @@ vec3 project(Seen seen, int view, vec3 d) {
               depth);
 }
 
-bool inImage(int view, vec3 place) {
-  return place.z >= lenses[view].x && all(greaterThanEqual(place.xy, lenses[view].zw)) &&
-         all(lessThan(place.xy, lenses[view].zw + viewports[view].zw));
+/// True when a projected point lies in the image and not in front of the near plane.
+bool inImage(int view, vec3 projected) {
+  return projected.z >= lenses[view].x && all(greaterThanEqual(projected.xy, lenses[view].zw)) &&
+         all(lessThan(projected.xy, lenses[view].zw + viewports[view].zw));
 }
 
 bool inClipBox(int grid, int i, vec3 d) {
   return all(greaterThanEqual(d, grids[grid].clipLo[i].xyz)) && all(lessThanEqual(d, grids[grid].clipHi[i].xyz));
 }
 
-/// DrawOptions::clip, with its boxes, cutouts and planes in steps of the grid.
+/// True when DrawOptions::clip keeps the point. Its boxes, cutouts and planes are in steps of the grid.
 bool keptByClip(int grid, vec3 d) {
   bool kept = clips.x == 0;
   for (int i = 0; i < clips.x; ++i) kept = kept || inClipBox(grid, i, d);
@@ -72,7 +73,7 @@ bool keptByClip(int grid, vec3 d) {
   return kept;
 }
 
-/// DrawOptions::classes, for the class in byte `lane` of a word.
+/// True when DrawOptions::classes has the class in byte `lane` of `word`.
 bool keptByClass(uint word, uint lane) {
   uint c = word >> (8u * lane) & 255u;
   return (classes[c >> 5] >> (c & 31u) & 1u) != 0u;

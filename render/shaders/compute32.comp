@@ -1,19 +1,19 @@
-// Two passes over the batches: the smallest depth of each pixel, then the lowest id at that depth. One program for
-// both, so that both compute the same bits. The first notes in a bit for each point whether it was at the front when
-// it came; the second visits only those, for a point that ends at the front was there when it came.
+// Two passes over the batches find the smallest depth of each pixel, then the lowest id at that depth. One program does
+// both, so that both compute the same bits. The first pass notes for each point, in a bit, whether it was at the front
+// when it was drawn. The second visits only those, because a point that is at the front in the end was there then, too.
 layout(std430, binding = STRATA_BINDING_DEPTH) buffer Depths { uint depths[]; };
 layout(std430, binding = STRATA_BINDING_ID) buffer Ids { uint ids[]; };
 layout(std430, binding = STRATA_BINDING_MORE) buffer Candidates { uint candidates[]; };
 
 layout(location = STRATA_UNIFORM_PASS) uniform int indexPass;
 
-const uint kFours = 8u;  // of points, whose bits are one word
+const uint kFours = 8u;  // fours of points whose bits share a word
 
 bool visit(uvec3 words, uint point) {
   bool front = false;
   for (int view = 0; view < STRATA_VIEWS; ++view) {
     uint depth;
-    int pixel = placePoint(view, words, depth);
+    int pixel = pixelOf(view, words, depth);
     if (pixel < 0) continue;
     if (indexPass != 0) {
       uint id = batch.firstId + point;
@@ -31,7 +31,7 @@ void main() {
   beginBatch();
   uint thread = gl_LocalInvocationID.x;
   uint end = batch.pointCount + pointsBefore();
-  uint threads = min((end + 3u) >> 2, uint(STRATA_GROUP_SIZE));  // that have a point
+  uint threads = min((end + 3u) >> 2, uint(STRATA_GROUP_SIZE));  // threads that have a point
   for (uint first = 4u * thread, slot = batch.firstCandidate + thread; first < end;
        first += 4u * kFours * STRATA_GROUP_SIZE, slot += threads) {
     if (indexPass == 0) {

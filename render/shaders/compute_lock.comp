@@ -1,6 +1,6 @@
-// A lock for each pixel (Günther 2013, Algorithms 2 and 3): early-out, lock, depth test, write, unlock, with the depth
-// as it is in clip space (4.2.2). Theirs waits as long as it takes; here a thread gives up after kMostTurns and says
-// so, and the host then finishes the picture with compute32's passes.
+// A lock for each pixel (Günther 2013, Algorithms 2 and 3): early-out, lock, depth test, write, unlock. The depth is
+// the one in clip space (4.2.2). Their threads wait as long as it takes. Here a thread gives up after STRATA_LOCK_TURNS
+// turns and counts that, and the host then finishes the picture with the passes of compute32.
 layout(std430, binding = STRATA_BINDING_DEPTH) coherent volatile buffer Depths { uint depths[]; };
 layout(std430, binding = STRATA_BINDING_ID) coherent volatile buffer Ids { uint ids[]; };
 layout(std430, binding = STRATA_BINDING_MORE) coherent volatile buffer Locks { uint locks[]; };
@@ -35,7 +35,7 @@ void show(int pixel, uint depth, uint id) {
 bool visit(uvec3 words, uint point) {
   for (int view = 0; view < STRATA_VIEWS; ++view) {
     uint depth;
-    int pixel = placePoint(view, words, depth);
+    int pixel = pixelOf(view, words, depth);
     if (pixel >= 0) show(pixel, depth, batch.firstId + point);
   }
   return false;

@@ -1,5 +1,5 @@
 // One work-group draws one batch (Schütz 2022, 3.2). A thread takes four neighbouring points at a time, with one
-// 128-bit load a plane (3.4). What includes it says in visit() what becomes of a point.
+// 128-bit load per plane (3.4). The shader that includes this defines visit(), which draws a point.
 layout(local_size_x = STRATA_GROUP_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer PageOfFours { uvec4 fours[]; };
@@ -9,7 +9,7 @@ layout(location = STRATA_UNIFORM_FIRST_RECORD) uniform uint firstRecord;
 
 BatchRecord batch;
 Seen seen[STRATA_VIEWS];
-int planes = 0;  // the most of any view
+int planes = 0;  // the most that any view reads
 
 void beginBatch() {
   uint record = firstRecord + gl_WorkGroupID.x;
@@ -20,26 +20,26 @@ void beginBatch() {
   }
 }
 
-/// Index of the pixel that a point falls on, with the depth's bits; -1 where it is not drawn.
-int placePoint(int view, uvec3 words, out uint depth) {
+/// Returns the index of the pixel that a point falls on, and the bits of its depth; -1 where it is not drawn.
+int pixelOf(int view, uvec3 words, out uint depth) {
   depth = 0u;
   vec3 d = gridSteps(seen[view], words);
-  vec3 place = project(seen[view], view, d);
-  if (!inImage(view, place)) return -1;
+  vec3 projected = project(seen[view], view, d);
+  if (!inImage(view, projected)) return -1;
 #if STRATA_VIEWS > 1
   if (seen[view].planes == 0) return -1;
 #endif
-  int row = int(place.y) - int(lenses[view].w);
+  int row = int(projected.y) - int(lenses[view].w);
   if (row < pixelsOfView[view].y || row >= pixelsOfView[view].z) return -1;
 #if STRATA_CLIP
   if (seen[view].grid >= 0 && !keptByClip(seen[view].grid, d)) return -1;
 #endif
-  depth = floatBitsToUint(place.z);
-  return pixelsOfView[view].x + (row - pixelsOfView[view].y) * int(viewports[view].z) + int(place.x) -
+  depth = floatBitsToUint(projected.z);
+  return pixelsOfView[view].x + (row - pixelsOfView[view].y) * int(viewports[view].z) + int(projected.x) -
          int(lenses[view].z);
 }
 
-/// What is to be done with a point of the batch; true where it may be the one that its pixel shows.
+/// Draws a point of the batch. True where it may be the one that its pixel shows.
 bool visit(uvec3 words, uint point);
 
 uint visitOne(uvec3 words, uint point, uint classWord, uint lane) {
@@ -50,10 +50,11 @@ uint visitOne(uvec3 words, uint point, uint classWord, uint lane) {
   return visit(words, point) ? 1u << lane : 0u;
 }
 
-/// Points before the first of the batch that lie in the same four words.
+/// The number of points in front of the batch's first that lie in the same four words.
 uint pointsBefore() { return batch.firstWord & 3u; }
 
-/// The four points that begin `at` points after the first whole four. A bit for each that visit() says true of.
+/// Visits the four points that begin `at` points behind the first whole four. Returns a bit for each that visit() is
+/// true for.
 uint visitFour(uint at) {
   uint word = (batch.firstWord + at) >> 2, stride = batch.planeStride >> 2;
   uvec4 low = fours[word], medium = uvec4(0u), high = uvec4(0u);
@@ -64,7 +65,7 @@ uint visitFour(uint at) {
 #else
   const uint kind = 0u;
 #endif
-  uint point = at - pointsBefore();  // huge where it is before the first
+  uint point = at - pointsBefore();  // wraps round to a huge number in front of the batch's first point
   return visitOne(uvec3(low.x, medium.x, high.x), point, kind, 0u) |
          visitOne(uvec3(low.y, medium.y, high.y), point + 1u, kind, 1u) |
          visitOne(uvec3(low.z, medium.z, high.z), point + 2u, kind, 2u) |

@@ -1,5 +1,5 @@
-// What all steps of hole filling by jump flooding share (Farias 2014). A thread is a pixel of the half picture; the
-// arithmetic is that of flood_search.cpp and flood_splats.cpp.
+// What all steps of hole filling by jump flooding share (Farias 2014). There is one thread per pixel of the half
+// picture. The arithmetic is that of flood_search.cpp and flood_splats.cpp.
 layout(local_size_x = STRATA_GROUP_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_FLOOD_PARAMS) readonly buffer Params { FloodParams params; };
@@ -32,7 +32,7 @@ vec3 normalOf(FloodSeed seed) {
   return (vec3(seed.normal & 1023u, seed.normal >> 10 & 1023u, seed.normal >> 20) - 512.0) / 511.0;
 }
 
-/// In pixels of the half picture.
+/// The largest distance of a neighbour, in pixels of the half picture.
 float reachPx(FloodSeed seed) { return 0.5 * seed.reach / metres(seed.depth); }
 
 bool sameLayer(FloodSeed a, FloodSeed b) {

@@ -1,5 +1,5 @@
-// The fourth step's second half: the splats' depths (pass 0), then the blend of those in front (pass 1), by the weight
-// exp(-d^2). All sums are of integers, so that the order does not matter.
+// The second half of the fourth step: draws the depths of the splats (pass 0), then blends those in front (pass 1) by
+// the weight exp(-d^2). All sums are of integers, so their order does not matter.
 layout(std430, binding = STRATA_BINDING_FLOOD_FROM) readonly buffer Shapes { FloodShape shapes[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_LIMITS) buffer Limits { uint limits[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_SUMS) buffer Sums { FloodSum sums[]; };

@@ -1,4 +1,4 @@
-// Writes what the splats gave into the picture. A thread is two by two pixels of it.
+// Writes the sums of the splats into the picture. A thread writes two by two pixels of it.
 layout(std430, binding = STRATA_BINDING_FLOOD_FROM) buffer Ids { uint ids[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_LIMITS) readonly buffer Limits { uint limits[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_COLOURS) writeonly buffer Colours { uint colours[]; };

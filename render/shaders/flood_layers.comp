@@ -1,4 +1,5 @@
-// One round of the second step (4.2): each pixel looks at the layers of the eight pixels that are one jump away.
+// One round of the second step (4.2): each pixel looks at the layers of the eight pixels that are one jump away. It
+// holds the closest seed of each of up to four layers; a fifth layer replaces the one whose seed is farthest.
 layout(std430, binding = STRATA_BINDING_FLOOD_FROM) readonly buffer From { uvec4 from[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_TO) writeonly buffer To { uvec4 to[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_REACHES) readonly buffer Reaches { uint reaches[]; };

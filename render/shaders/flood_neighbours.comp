@@ -1,5 +1,5 @@
 // One round of the third step (4.3): each seed looks at the layers one jump away and at the neighbours of the seeds
-// there; with jump 0 at the neighbours' neighbours. Two uvec4 a seed.
+// there. With jump 0 it looks at its neighbours' neighbours. The neighbours of a seed take two uvec4.
 layout(std430, binding = STRATA_BINDING_FLOOD_FROM) readonly buffer From { uvec4 from[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_TO) writeonly buffer To { uvec4 to[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_LAYERS) readonly buffer Layers { uvec4 layers[]; };

@@ -1,4 +1,4 @@
-// The first step (4.1): the nearest point of each 2 x 2 pixels, and the largest reach in each tile.
+// The first step (4.1): finds the nearest point of each 2 x 2 pixels, and the largest reach in each tile.
 layout(std430, binding = STRATA_BINDING_FLOOD_NORMALS) readonly buffer Normals { uint normals[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_TO) writeonly buffer Layers { uvec4 layers[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_REACHES) buffer Reaches { uint reaches[]; };
@@ -32,7 +32,7 @@ void main() {
   uint index = indexAt(p);
   if (id != kNone) {
     seed.reach = reachOf(id);
-    // The seeds of neighbouring pixels are next to each other, however near the points of the scan lie.
+    // Seeds in neighbouring pixels must reach each other, however fine the scan is.
     if (has(STRATA_FLOOD_SECTORS)) seed.reach = max(seed.reach, STRATA_FLOOD_NEXT_PIXELS * metres(seed.depth));
     if (has(STRATA_FLOOD_NORMALS)) seed.normal = normals[index];
     ivec2 tile = p / STRATA_FLOOD_TILE;

@@ -1,4 +1,4 @@
-// The fourth step's first half (4.4): the shape of each seed's splat, as makeSplats() has it.
+// The first half of the fourth step (4.4) shapes the splat of each seed. The functions are those of flood_splats.cpp.
 layout(std430, binding = STRATA_BINDING_FLOOD_FROM) readonly buffer From { uvec4 from[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_TO) writeonly buffer Shapes { FloodShape shapes[]; };
 layout(std430, binding = STRATA_BINDING_FLOOD_COLOURS) readonly buffer Colours { uint colours[]; };
@@ -64,7 +64,8 @@ vec3 planeNormal(vec3 toEye) {
   return length(facing) > 0.1 ? normalize(facing) : toEye;
 }
 
-/// Metres; inverse lengths of the axes are in across and along. Returns the longer radius.
+/// Sets across and along to the axes of the splat, divided by the squares of their lengths. Returns the longer radius,
+/// metres.
 float axesOf(vec3 normal, float radius, out vec3 across, out vec3 along) {
   vec3 other = abs(normal.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
   vec3 u = normalize(cross(normal, other)), v = cross(normal, u);
@@ -92,7 +93,7 @@ float axesOf(vec3 normal, float radius, out vec3 across, out vec3 along) {
   return radius * stretch;
 }
 
-/// Where the plane of the splat meets the ray of a pixel.
+/// Expresses where the plane of the splat meets the ray of a pixel as a function of the pixel.
 void project(vec3 centre, vec3 normal, vec3 across, vec3 along, inout FloodShape shape) {
   vec2 perPixel = vec2(params.perPixel, -params.perPixel), tilt = vec2(0.0), slope = vec2(0.0), a, b;
   if (has(STRATA_FLOOD_PERSPECTIVE)) {

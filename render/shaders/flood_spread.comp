@@ -1,5 +1,5 @@
-// How far a reach goes in the tiles around: behind the tiles' own reaches those of what reaches into them. A thread is a
-// tile.
+// Finds for each tile the largest reach of all tiles that reach into it. These follow the tiles' own reaches in the
+// buffer. There is one thread per tile.
 layout(std430, binding = STRATA_BINDING_FLOOD_REACHES) buffer Reaches { uint reaches[]; };
 
 void main() {

@@ -1,10 +1,11 @@
-// planBatches() of batch_plan.cpp on the GPU: one work-group takes the batches of one part, culls them, chooses their
-// precision and appends what is left to the records of its run. Doubles, so that it decides as the CPU does.
+// planBatches() of batch_plan.cpp on the GPU. One work-group takes the batches of one part, culls them, chooses their
+// precision, and appends those that are left to the records of its run. It computes in doubles, so that it decides as
+// the CPU does.
 layout(local_size_x = STRATA_PLAN_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_PAGE) readonly buffer Page { uint page[]; };
 layout(std430, binding = STRATA_BINDING_RECORDS) writeonly buffer Records { BatchRecord records[]; };
-layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) writeonly buffer Places { BatchView places[]; };
+layout(std430, binding = STRATA_BINDING_BATCH_VIEWS) writeonly buffer BatchViews { BatchView batchViews[]; };
 layout(std430, binding = STRATA_BINDING_PARTS) readonly buffer Parts { DrawPart parts[]; };
 layout(std430, binding = STRATA_BINDING_VIEWS) readonly buffer Views { ViewRecord views[]; };
 layout(std430, binding = STRATA_BINDING_RUNS) buffer Runs { DispatchRecord runs[]; };
@@ -39,7 +40,7 @@ int clipSide(int view, dvec3 lo, dvec3 hi) {
   return side;
 }
 
-/// projectedSizePx() and the thresholds of batchPrecision().
+/// The planes that batchPrecision() wants by the size of the batch: projectedSizePx() against its thresholds.
 int wantedPlanes(int view, dvec3 lo, dvec3 size) {
   dvec4 forward = views[view].forward, measure = views[view].size;
   double longest = max(max(size.x, size.y), size.z);
@@ -53,10 +54,11 @@ int wantedPlanes(int view, dvec3 lo, dvec3 size) {
   return pixels < STRATA_PX_AT_10_BITS ? 1 : pixels < STRATA_PX_AT_20_BITS ? 2 : 3;
 }
 
-BatchView placeFor(int view, DrawPart part, uint box, dvec3 boxMin) {
-  BatchView place = BatchView(ivec4(0), ivec4(0));
+/// How a view sees a batch; offset.w is 0 where it does not see it.
+BatchView batchViewOf(int view, DrawPart part, uint box, dvec3 boxMin) {
+  BatchView batchView = BatchView(ivec4(0), ivec4(0));
   ivec4 first = part.first[view];
-  if (first.w < 0) return place;
+  if (first.w < 0) return batchView;
   ivec3 bits = ivec3(uvec3(page[box + 9u], page[box + 9u] >> 8, page[box + 9u] >> 16) & 255u);
   dvec3 size;
   for (int axis = 0; axis < 3; ++axis) size[axis] = ldexp(part.step[axis], bits[axis]);
@@ -67,18 +69,18 @@ BatchView placeFor(int view, DrawPart part, uint box, dvec3 boxMin) {
   if (forcedPlanes != 0) {
     planes = min(forcedPlanes, int(part.planes));
   } else {
-    if (side == kOutside) return place;
+    if (side == kOutside) return batchView;
     for (int i = 0; i < 5; ++i)
-      if (sideOf(views[view].planes[i], lo, hi) == kOutside) return place;
+      if (sideOf(views[view].planes[i], lo, hi) == kOutside) return batchView;
   }
   ivec3 shift = bits - 10 * planes;
   ivec3 middle = ivec3(0);
   for (int axis = 0; axis < 3; ++axis)
     if (shift[axis] > 0) middle[axis] = 1 << (shift[axis] - 1);
   ivec3 steps = ivec3(int(page[box + 6u]), int(page[box + 7u]), int(page[box + 8u]));
-  place.offset = ivec4(first.xyz + steps + middle, planes);
-  place.shift = ivec4(shift, 2 * first.w + (side == kPartly ? STRATA_CLIPPED : 0));
-  return place;
+  batchView.offset = ivec4(first.xyz + steps + middle, planes);
+  batchView.shift = ivec4(shift, 2 * first.w + (side == kPartly ? STRATA_CLIPPED : 0));
+  return batchView;
 }
 
 void main() {
@@ -91,7 +93,7 @@ void main() {
     BatchView seen[STRATA_VIEWS];
     int sightings = 0;
     for (int view = 0; view < STRATA_VIEWS; ++view) {
-      seen[view] = placeFor(view, part, box, boxMin);
+      seen[view] = batchViewOf(view, part, box, boxMin);
       if (seen[view].offset.w == 0) {
         atomicAdd(counters.batchesCulled, 1u);
         continue;
@@ -114,6 +116,6 @@ void main() {
     atomicAdd(counters.pointsDrawn, uint(sightings) * record.pointCount);
     uint index = part.firstRecord + atomicAdd(runs[part.run].x, 1u);
     records[index] = record;
-    for (int view = 0; view < STRATA_VIEWS; ++view) places[index * STRATA_VIEWS + view] = seen[view];
+    for (int view = 0; view < STRATA_VIEWS; ++view) batchViews[index * STRATA_VIEWS + view] = seen[view];
   }
 }

@@ -1,5 +1,6 @@
-// One GL point for each point. The position is set to the middle of its pixel, so that every driver fills the pixel
-// that the other rasterizers fill. The depth goes to a float buffer scaled by a power of two, which keeps all its bits.
+// Draws one GL point per point. Its position is the middle of its pixel, so that every driver fills the pixel that the
+// other rasterizers fill. The depth buffer holds floats, and the depth is scaled by a power of two, which keeps its
+// bits.
 layout(location = STRATA_ATTRIBUTE_RECORD) in uint record;
 
 flat out uint id;
@@ -26,9 +27,10 @@ void main() {
   if (seen.planes > 1) words.y = page[word + batch.planeStride];
   if (seen.planes > 2) words.z = page[word + 2u * batch.planeStride];
   vec3 d = gridSteps(seen, words);
-  vec3 place = project(seen, 0, d);
+  vec3 projected = project(seen, 0, d);
   id = batch.firstId + point;
-  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside
-  if (inImage(0, place) && kept(batch, seen, point, d))
-    gl_Position = vec4((floor(place.xy) - lenses[0].zw + 0.5) / (0.5 * viewports[0].zw) - 1.0, place.z * kDepthScale, 1.0);
+  gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside of the image
+  if (inImage(0, projected) && kept(batch, seen, point, d))
+    gl_Position = vec4((floor(projected.xy) - lenses[0].zw + 0.5) / (0.5 * viewports[0].zw) - 1.0,
+                       projected.z * kDepthScale, 1.0);
 }

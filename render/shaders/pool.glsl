@@ -1,4 +1,5 @@
-// The pages of the point pool, as one array. Each is a block of its own, since a driver may bind none of all of it.
+// The pages of the point pool as one array. Each page is a block of its own, because a driver may not bind a block as
+// large as the pool.
 layout(std430, binding = 0) buffer Page0 { uvec4 page0[]; };
 layout(std430, binding = 1) buffer Page1 { uvec4 page1[]; };
 layout(std430, binding = 2) buffer Page2 { uvec4 page2[]; };

@@ -1,4 +1,4 @@
-// Pixels that show a point of a piece that was written again fetch it anew, now that it has more bits.
+// Fetches the points of pixels anew where their pieces were written again, because these have more bits now.
 layout(local_size_x = STRATA_GROUP_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_STAGED) buffer Kept { uvec4 kept[]; };

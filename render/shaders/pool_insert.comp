@@ -1,4 +1,4 @@
-// Puts new points at their shuffled places in the pool (Rumpler 2019, 3.3). A work-group for each piece.
+// Puts new points at their shuffled places in the pool (Rumpler 2019, 3.3). There is one work-group per piece.
 layout(local_size_x = STRATA_GROUP_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_STAGED) readonly buffer Staged { uvec4 staged[]; };

@@ -1,6 +1,7 @@
 // The passes of progressive drawing over some points: those that the pixels kept (reprojection; Rumpler 2019, 3.5.1) or
-// a range of the pool (fill; 3.5.2). Three times: the smallest depth of each pixel, the lowest id at that depth, and the
-// point that has both is kept. A bit for each point says whether it still may be that one, as in compute32.comp.
+// a range of the pool (fill; 3.5.2). Three passes find the smallest depth of each pixel, find the lowest id at that
+// depth, and keep the point that has both. A bit for each point says whether it may still be that one, as in
+// compute32.comp.
 layout(local_size_x = STRATA_GROUP_SIZE) in;
 
 layout(std430, binding = STRATA_BINDING_POINTS) buffer Points { uvec4 points[]; };
@@ -12,11 +13,11 @@ layout(std430, binding = STRATA_BINDING_MORE) buffer Candidates { uint candidate
 
 layout(location = STRATA_UNIFORM_RANGE) uniform uvec3 range;
 #if STRATA_ONE_GRID
-layout(location = STRATA_UNIFORM_GRID) uniform vec4 gridRows[3];  // a store has one; loads cost more than arithmetic
+layout(location = STRATA_UNIFORM_GRID) uniform vec4 gridRows[3];  // a single store has one grid, and loads are dear
 #endif
 
 const int pass = STRATA_PASS, kDepth = 0, kIndex = 1, kKeep = 2;
-const uint kPoints = 32u;  // of a thread, whose bits are one word
+const uint kPoints = 32u;  // points of a thread, whose bits share a word
 
 Seen seenBy(PoolPiece piece) {
   uint grid = piece.flags >> STRATA_PIECE_GRID;
@@ -39,7 +40,8 @@ Seen seenBy(PoolPiece piece) {
   return seen;
 }
 
-/// Index of the pixel that point i of the range falls on, with its depth's bits and its id; -1 where it is not drawn.
+/// Returns the index of the pixel that point i of the range falls on, the bits of its depth, and its id; -1 where it is
+/// not drawn. Removes points of freed pieces on the way.
 int locate(uint i, uvec4 point, out uint depth, out uint id) {
   depth = 0u;
   id = 0u;
@@ -57,14 +59,14 @@ int locate(uint i, uvec4 point, out uint depth, out uint id) {
 #endif
   Seen seen = seenBy(piece);
   vec3 d = gridSteps(seen, point.xyz);
-  vec3 place = project(seen, 0, d);
-  if (!inImage(0, place)) return -1;
+  vec3 projected = project(seen, 0, d);
+  if (!inImage(0, projected)) return -1;
 #if STRATA_CLIP
   if (seen.grid >= 0 && !keptByClip(seen.grid, d)) return -1;
 #endif
-  depth = floatBitsToUint(place.z);
+  depth = floatBitsToUint(projected.z);
   id = uint(piece.offset.w) + index;
-  ivec2 pixel = ivec2(place.xy) - ivec2(lenses[0].zw);
+  ivec2 pixel = ivec2(projected.xy) - ivec2(lenses[0].zw);
   return pixel.y * int(viewports[0].z) + pixel.x;
 }
 
