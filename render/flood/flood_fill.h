@@ -13,7 +13,7 @@ struct FloodStats {
 /// Fills holes by jump flooding (Farias 2014). In half the resolution, it takes the points that the picture shows,
 /// finds the layers of surface around each pixel, then the neighbours of each point in its layer, and draws each point
 /// as a splat that reaches to its neighbours. Pixels that are empty, or hidden by a splat, become the mean of the
-/// splats in front; all others stay. docs/effects.md lists our deviations from the paper. `picture` was drawn from
+/// splats in front; all others stay. docs/hole_filling.md lists our deviations from the paper. `picture` was drawn from
 /// `list` as seen by `view`, and is not lit yet.
 FloodStats floodFill(const RenderList& list, const View& view, const FloodSettings& settings, const ThreadPool& pool,
                      Picture& picture);

@@ -1,10 +1,12 @@
-// How well holes are filled: a scan thinned at random, drawn and filled in several ways, against the picture of the
-// whole scan. docs/benchmarks/filling.md has the results.
-//   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]   PSNR, SSIM, covered and wrongly filled pixels, first
-//   view fill_quality times NAME.strata VIEWS.json [KEPT...]          milliseconds of each step fill_quality steadiness
-//   NAME.strata VIEWS.json [KEPT...]     difference of successive frames
-// VIEWS.json is a camera path, each of its keys a view. KEPT are the shares of points that remain, such as 0.25. OUT is
-// a folder; it gets the pictures. Tables are printed.
+// Measures how well holes are filled. A scan is thinned at random, drawn, filled in several ways, and compared with the
+// picture of the whole scan. docs/benchmarks/filling.md has the results. Each call prints one table:
+//   fill_quality pictures OUT NAME.strata VIEWS.json [KEPT...]
+//       PSNR, SSIM, covered and wrongly filled pixels; the pictures of the first view go to the folder OUT
+//   fill_quality times NAME.strata VIEWS.json [KEPT...]
+//       milliseconds of each step
+//   fill_quality steadiness NAME.strata VIEWS.json [KEPT...]
+//       the difference between successive frames
+// VIEWS.json is a camera path, each of whose keys is a view. KEPT are the shares of points that remain, such as 0.25.
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
@@ -38,7 +40,7 @@ constexpr int kSteadyFrames = 4;
 constexpr std::size_t kJudgedViews = 1;  ///< of the pictures: judging them takes longest
 constexpr double kStepPixels = 0.6;      ///< that the target moves by from frame to frame
 
-/// Every node of a store with all that its payload holds, normals too.
+/// Every node of a store with everything that its payload holds, including normals.
 RenderList readWhole(const Store& store) {
   RenderList list;
   for (std::uint32_t i = 0; i < store.hierarchy().nodes.size(); ++i) {
@@ -76,7 +78,7 @@ MeanPicture meanPicture(const RenderList& list, const View& view) {
   return maker.finish(DrawOptions{}.background);
 }
 
-/// One way of filling a picture that was drawn without.
+/// One way of filling a picture that was drawn unfilled.
 struct Way {
   std::string name;
   int window = 1;
@@ -126,7 +128,7 @@ std::string fileName(std::string name) {
   return name;
 }
 
-/// What ways of filling make of thinned scans, against the picture of all points: one column a share.
+/// Compares fillings of thinned scans with the picture of all points, with one column per share.
 void pictures(const std::string& out, const Store& store, const std::vector<View>& views,
               const std::vector<double>& kept) {
   const RenderList whole = readWhole(store);
@@ -170,7 +172,7 @@ void pictures(const std::string& out, const Store& store, const std::vector<View
   }
 }
 
-/// Milliseconds of each step, means of several frames, the first of which does not count.
+/// The mean time of each step over several frames, milliseconds. The first frame does not count.
 struct StepTimes {
   FloodStats sum;
   double wholeMs = 0.0;
@@ -195,7 +197,7 @@ StepTimes timesOf(const Picture& drawn, Fill fill) {
   return times;
 }
 
-/// As Table 5.2 of Farias 2014: on the CPU, and by compute shaders where there is an OpenGL.
+/// Times as in Table 5.2 of Farias 2014, on the CPU, and by compute shaders where there is OpenGL.
 void times(const Store& store, const std::vector<View>& views, const std::vector<double>& kept) {
   const RenderList whole = readWhole(store);
   const auto rasterizer = createRasterizer(Backend::cpu, {}, nullptr);
@@ -259,7 +261,7 @@ void steadiness(const Store& store, const std::vector<View>& views, const std::v
   for (const Way& way : ways) rows.push_back("| " + way.name + " |");
   std::cout << "| mean difference, of 255 |";
   for (std::size_t v = 0; v < views.size(); ++v) {
-    // The path of one view, and what of all points it shows: the same for every way.
+    // The path of one view, and the pictures of all points along it, are the same for every way.
     std::vector<View> path;
     std::vector<Picture> full(kSteadyFrames);
     const double pixel = glm::length(views[v].target - views[v].eye) / pixelsAt(views[v], 1.0, 1.0);

@@ -17,7 +17,7 @@
 namespace strata::bench {
 namespace {
 
-/// Of the points in one frame's share of the pool, how many have the next point of their node there too.
+/// The fraction of the points in one frame's share of the pool whose next point of the same node lies there too.
 void shuffleTable(std::uint32_t part) {
   constexpr std::uint32_t kShares = 32;
   std::printf("Points whose successor is drawn in the same frame, of a pool that is drawn in %u (4.2.2):\n\n", kShares);
@@ -45,7 +45,7 @@ void shuffleTable(std::uint32_t part) {
   }
 }
 
-/// A plane of square nodes, each with as many points as its scan happened to leave there.
+/// A plane of square nodes with random numbers of points.
 struct Ground {
   static constexpr int kSide = 96;  ///< nodes
   std::vector<std::uint32_t> points;
@@ -58,13 +58,13 @@ struct Ground {
   }
 };
 
-/// How the manager is asked: for whole nodes, as in the paper, or for pieces of what is seen of them.
+/// What the manager is asked for: whole nodes, as in the paper, or pieces of their visible points.
 struct Way {
   const char* name;
   bool pieces;
 };
 
-/// Wanders over the ground; a view shows the nodes next to the camera, up to a budget, the far ones in part.
+/// A camera that wanders over the ground. A view shows the nodes next to it, up to a budget, and the far ones in part.
 class Wanderer {
  public:
   Wanderer(const Ground& ground, Way way, std::uint32_t pool, std::uint64_t budget)
@@ -174,7 +174,7 @@ void fragmentationRow(const Way& way, const Ground& ground, std::uint32_t pool, 
   }
 }
 
-/// 25 and 100 million places, a budget of 20 million, nodes of up to 100 000 points, as in the paper.
+/// The setting of the paper: 25 and 100 million places, a budget of 20 million points, nodes of up to 100 000 points.
 void fragmentationTable(std::uint32_t part) {
   const std::uint32_t pool = 25'000'000 / part, large = 100'000'000 / part, most = std::max(100'000 / part, 10'000u);
   const std::uint64_t budget = 20'000'000 / part;

@@ -1,10 +1,10 @@
-// Progressive drawing: Rumpler 2019, 4.1, with a made cloud of buildings at 1280 x 720, as tables of
-// docs/benchmarks/progressive.md. The camera moves a little in each frame that is timed, so that no frame finds its
+// Measures progressive drawing as Rumpler 2019, 4.1, with a synthetic cloud of buildings at 1280 x 720. Prints tables
+// of docs/benchmarks/progressive.md. The camera moves a little in each frame that is timed, so that no frame finds its
 // picture finished.
 //
 // progressive_bench [--small | --points MILLION] [--pictures FOLDER]
 //
-// --small: 300 000 points, a few seconds. --pictures: also with the perfect shuffle, pictures of both (4.2.2).
+// --small draws 300 000 points and takes a few seconds. --pictures writes pictures of a jump of the camera (4.2.2).
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -68,7 +68,7 @@ struct Times {
   double frame, gpu, upload, clear, reproject, fill, index, keep, read, resolve;
 };
 
-/// Medians over frames of a camera that creeps aside. `listOf` gives the frame's nodes.
+/// Medians over the frames of a camera that moves slowly to the side. listOf(i) gives the nodes of frame i.
 Times timeFrames(Rasterizer& rasterizer, const std::function<const RenderList&(int)>& listOf, View view, int frames) {
   const auto* const steps = dynamic_cast<const ProgressiveRasterizer*>(&rasterizer);
   std::vector<double> values[10];
@@ -103,7 +103,7 @@ void savePicture(const Scale& scale, const std::string& name, const Picture& pic
     writePng(scale.pictures + "/" + name + ".png", {picture.width, picture.height, picture.colour});
 }
 
-/// Frames until shares of the pixels are final, after a jump of the camera to nodes that are in the pool.
+/// The number of frames until shares of the pixels are final, after a jump of the camera to nodes that are in the pool.
 void convergenceTable(const Scale& scale, const Scene& scene) {
   Picture wanted, picture;
   {
@@ -154,7 +154,7 @@ void convergenceTable(const Scale& scale, const Scene& scene) {
   }
 }
 
-/// Figure 4.1 and Table 4.2: the passes over the number of new points.
+/// Figure 4.1 and Table 4.2: the times of the passes for growing numbers of new points.
 void fillTable(const Scale& scale, const Scene& scene) {
   std::printf("\nThe passes over the points of a frame (Figure 4.1, Table 4.2), milliseconds:\n\n");
   std::printf("| a frame | frame | upload | clear | reproject | fill | index | keep | read back | resolve |\n");
@@ -171,8 +171,7 @@ void fillTable(const Scale& scale, const Scene& scene) {
   }
 }
 
-/// Table 4.3: half of the points, in a pool that holds nothing else; with the other half, seen after it; and seen with
-/// it.
+/// Table 4.3: half of the points, in a pool without the other half; with the other half put in after it; and with it.
 void halfFullTable(const Scale& scale, const Scene& scene) {
   RenderList half;
   for (std::size_t i = 0; i < scene.list.items.size(); i += 2) {
@@ -197,7 +196,7 @@ void halfFullTable(const Scale& scale, const Scene& scene) {
   }
 }
 
-/// Table 4.4: against drawing everything in each frame.
+/// Table 4.4: a comparison with drawing everything in each frame.
 void comparisonTable(const Scale& scale, const Scene& scene) {
   std::printf("\nAgainst drawing everything (Table 4.4), %.1f M points, %d x %d, milliseconds a frame:\n\n",
               millions(scene.list.pointCount), scale.width, scale.height);
@@ -222,7 +221,7 @@ void comparisonTable(const Scale& scale, const Scene& scene) {
     std::snprintf(name, sizeof name, "progressive, %.2f M a frame", millions(pool) / share);
     row(name, timeFrames(*rasterizer, scene.list, scene.view, scale.frames));
   }
-  // Two lists that take turns in a pool which cannot hold both: the memory manager has work in each frame.
+  // Two lists take turns in a pool that cannot hold both, so the memory manager has work in each frame.
   RenderList lists[2];
   for (std::size_t i = 0; i < scene.list.items.size(); ++i) {
     lists[i % 2].items.push_back(scene.list.items[i]);

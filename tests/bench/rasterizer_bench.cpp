@@ -1,4 +1,5 @@
-// Points a second of each rasterizer at 1920 x 1080. Not run by ctest: rasterizer_bench --benchmark_filter=...
+// Measures points per second of each rasterizer at 1920 x 1080. ctest does not run it: rasterizer_bench
+// --benchmark_filter=...
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,21 +18,21 @@ namespace {
 
 constexpr double kPointsANode = 40000.0;
 
-/// Points in millions: STRATA_BENCH_POINTS, else 10.
+/// How many millions of points are drawn: STRATA_BENCH_POINTS, or else 10.
 double millions() {
   const char* text = std::getenv("STRATA_BENCH_POINTS");
   return text == nullptr ? 10.0 : std::max(std::atof(text), 0.001);
 }
 
 const RenderList& town() {
-  // A fifth of the points stands on the ground; a tile is two nodes, of which the upper one is small.
+  // A fifth of the points lies above the ground. A tile has two nodes, of which the upper one is small.
   static const RenderList list =
       test::makeTown(glm::dvec3(456789.0, 5412345.0, 300.0), 500.0, static_cast<std::uint32_t>(0.8e6 * millions()), 1,
                      std::max(1, static_cast<int>(std::sqrt(0.8e6 * millions() / kPointsANode))));
   return list;
 }
 
-/// All of it, as large as it can be.
+/// A view that shows the whole town as large as possible.
 View farView() {
   View view = viewOfBox(test::boundsOf(town()), {1.0, 0.83, -0.71}, 1920, 1080, 1.0);
   view.eye += (view.target - view.eye) * 0.35;
@@ -51,7 +52,7 @@ View otherEye(View view) {
   return view;
 }
 
-/// Each frame by step(), which returns its stats.
+/// Measures step(), which draws one frame and returns its stats.
 template <typename Step>
 void measure(benchmark::State& state, const Step& step) {
   DrawStats total;
@@ -88,7 +89,7 @@ void cpuWith(benchmark::State& state, int pointSize, int fill, bool edl, Shading
   draw(state, *cpuRasterizer(state), farView(), options);
 }
 
-/// Two eyes in one pass over the points, or one after the other.
+/// Draws two eyes in one pass over the points, or one after the other.
 void eyes(benchmark::State& state, Rasterizer& rasterizer, bool together) {
   const View views[] = {farView(), otherEye(farView())};
   Picture pictures[2];
@@ -102,8 +103,9 @@ void eyes(benchmark::State& state, Rasterizer& rasterizer, bool together) {
 
 void cpuEyes(benchmark::State& state, bool together) { eyes(state, *cpuRasterizer(state), together); }
 
-/// One block of points again and again: nothing but the kernel, everything in the first-level cache. Arguments: planes;
-/// whether the pixels are nearer than all points already; whether the batch is wholly in the image.
+/// Projects one block of points again and again, so that only the kernel is measured, with everything in the
+/// first-level cache. Arguments: the number of planes; 1 if the pixels are already nearer than all points; 1 if the
+/// batch lies wholly in the image.
 void kernel(benchmark::State& state) {
   const auto precision = static_cast<Precision>(state.range(0));
   KernelView view;

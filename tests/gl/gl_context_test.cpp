@@ -27,7 +27,7 @@ TEST_P(GlContexts, NameTheFileAndTheLineOfAShadersError) {
   STRATA_REQUIRE_CONTEXT(context, GetParam());
   const GlFunctions functions = loadGlFunctions(*context);
   try {
-    // Without shader_types.h the first binding of batch.glsl, on its line 2, has no number.
+    // Without shader_types.h, the first binding of batch.glsl has no number. It is on line 2.
     const GlProgram program(functions, {{gl::kComputeShader, {"points.frag", "batch.glsl"}}});
     FAIL() << "compiled";
   } catch (const Error& error) {

@@ -1,4 +1,4 @@
-// Hole filling in compute shaders against the way on the CPU.
+// Hole filling in compute shaders, compared with that on the CPU.
 #include <gtest/gtest.h>
 
 #include <algorithm>

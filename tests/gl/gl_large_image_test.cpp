@@ -1,4 +1,4 @@
-// Pictures larger than a storage block holds: drawn band by band, or refused with a warning.
+// Pictures larger than a storage block are drawn band by band, or refused with a warning.
 #include <gtest/gtest.h>
 
 #include "render/create_rasterizer.h"

@@ -1,5 +1,5 @@
-// What DrawOptions ask of the shaders, and several views at once, against the cpu rasterizer; and what happens where
-// the driver cannot.
+// DrawOptions in shaders, and several views at once, compared with the cpu rasterizer; and what happens where the
+// driver cannot do something.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -31,7 +31,8 @@ class GlOptions : public testing::TestWithParam<Backend> {
   }
   bool isCompute() const { return GetParam() != Backend::points; }
 
-  /// The same as the cpu's, but for points that fall to the other side of an edge. Colours within `alike` of 255 are.
+  /// Expects the picture of the cpu, except for points that fall to the other side of a pixel's edge. Colours that
+  /// differ by at most `alike` of 255 count as equal.
   void expectTheCpusPicture(const View& view, const DrawOptions& options, double mostOther = 0.002, int alike = 0) {
     const auto cpu = createRasterizer(Backend::cpu, {}, nullptr);
     Picture expected, picture;
@@ -124,7 +125,7 @@ TEST_P(GlOptions, BlendPointsNearTheFront) {
   }
 }
 
-/// One point in another pixel changes the splats around it, and shaders blend in integers.
+/// A looser comparison, because one point in another pixel changes the splats around it, and shaders blend in integers.
 TEST_P(GlOptions, FillHolesByJumpFlooding) {
   STRATA_CREATE_OR_SKIP();
   View view = view_;
@@ -224,7 +225,7 @@ TEST(Compute64, DrawsTheSameWithoutPrefetch) {
   EXPECT_EQ(a.depth, b.depth);
 }
 
-/// A context whose functions are another's but for some.
+/// A context that takes its functions from another, except for some.
 class ChangedContext final : public GlContext {
  public:
   using Change = Function (*)(const char* name, Function original);

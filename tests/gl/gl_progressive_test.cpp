@@ -1,4 +1,4 @@
-// Progressive drawing against the plain rasterizer, which draws every point in every frame.
+// Progressive drawing, compared with a plain rasterizer, which draws every point in every frame.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -30,7 +30,7 @@ class Progressive : public testing::Test {
     plain_ = createRasterizer(Backend::compute32, {}, createEglContext());
   }
 
-  /// Draws until nothing changes any more. Returns the number of frames.
+  /// Draws until the picture does not change any more. Returns the number of frames.
   int converge(const RenderList& list, const View& view, const DrawOptions& options = {}) {
     for (int frames = 1; frames < 2000; ++frames)
       if (isFinished(progressive_->draw(list, view, options, picture_))) return frames;
@@ -230,7 +230,7 @@ TEST_F(Progressive, NeverFreesWhatTheViewShows) {
   EXPECT_EQ(progressive_->progress().ghostPieces, 0u);
 }
 
-/// First a half of the nodes fills the pool alone, then they have to share it.
+/// At first one half of the nodes has the pool to itself, then all have to share it.
 TEST_F(Progressive, GivesEveryNodeAPartOfAPoolThatIsTooSmall) {
   STRATA_CREATE({20'000, 5'000, 60'000});
   const RenderList all = test::makeTown(kUtm, 200.0, 150'000, 16, 3);
@@ -262,7 +262,7 @@ TEST_F(Progressive, GivesEveryNodeAPartOfAPoolThatIsTooSmall) {
   EXPECT_EQ(progressive_->progress().ghostPieces, 0u);
 }
 
-/// Places far apart, three of them in view at a time.
+/// The scenes lie far apart, and three of them are in view at a time.
 TEST_F(Progressive, MakesRoomForWhatComesIntoViewAndKeepsWhatJustLeftIt) {
   STRATA_CREATE({50'000, 20'000, 100'000});
   std::vector<std::shared_ptr<const NodeData>> nodes;
@@ -315,7 +315,7 @@ TEST_F(Progressive, UploadsNoMoreThanItMayInAFrame) {
   expectPlainPicture(list, view);
 }
 
-/// Nodes come, go and come back in a pool that holds a part of them; slots and places are used many times over.
+/// Nodes come, go and come back in a pool that holds only some of them. Slots and places are used many times over.
 TEST_F(Progressive, StaysRightWhileNodesComeAndGo) {
   STRATA_CREATE({9'000, 12'000, 60'000});
   const RenderList town = test::makeTown(kUtm, 200.0, 100'000, 10, 5);
@@ -389,7 +389,7 @@ TEST_F(Progressive, NeverDrawsAFreedNodeInPlaceOfAnother) {
   }
 }
 
-/// The eye travels thousands of kilometres through places with fine steps; nothing is cleared, nothing jumps.
+/// The eye travels thousands of kilometres between scenes with fine steps. Nothing is cleared, and nothing jumps.
 TEST_F(Progressive, ShowsNoShiftOfItsOriginAtAnyDistance) {
   STRATA_CREATE({30'000, 1'000'000, 300'000});
   std::vector<std::shared_ptr<const NodeData>> nodes;

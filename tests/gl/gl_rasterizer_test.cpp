@@ -14,15 +14,15 @@ namespace {
 using test::ContextKind;
 
 const glm::dvec3 kUtm(456789.123, 5412345.678, 312.5);
-/// No symmetry of a grid, on which many points would have one depth and rounding decide between them.
+/// Has none of the symmetries of a grid. With them many points would have the same depth, and rounding would decide.
 const glm::dvec3 kDirection(1.0, 0.83, -0.71);
 
-/// Before any test makes a context.
+/// Runs before any test makes a context.
 const bool kOffered = (test::offerWideAtomicsInSoftware(), true);
 
 class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKind>> {
  protected:
-  /// False where there is no context; the test is then marked as skipped.
+  /// False where there is no context. The test is then skipped.
   bool create(const RasterizerOptions& options = {}) {
     std::string reason;
     auto context = test::tryContext(std::get<1>(GetParam()), reason);
@@ -34,7 +34,7 @@ class GlRasterizer : public testing::TestWithParam<std::tuple<Backend, ContextKi
 
   Backend backend() const { return std::get<0>(GetParam()); }
 
-  /// `points` may resolve a tie of depths either way.
+  /// The points rasterizer may resolve a tie of depths either way.
   double wantedAgreement() const { return backend() == Backend::points ? 0.995 : 0.999; }
 
   void expectOraclesPicture(const RenderList& list, const View& view) {
@@ -139,7 +139,7 @@ TEST_P(GlRasterizer, GivesTheSameColoursAsTheCpu) {
       otherColours += same && expected.colour[i] != picture_.colour[i];
     }
     EXPECT_EQ(otherColours, 0u);
-    // A point that falls to the other side of an edge changes pointSize^2 pixels.
+    // A point that falls to the other side of a pixel's edge changes pointSize^2 pixels.
     const double allowed = (1.0 - wantedAgreement()) * options.pointSize * options.pointSize;
     EXPECT_LE(static_cast<double>(otherIds), allowed * static_cast<double>(expected.pointId.size()));
   }

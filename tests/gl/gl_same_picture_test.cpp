@@ -1,4 +1,4 @@
-// Every way to draw with OpenGL against the oracle, on scans.
+// Every rasterizer that uses OpenGL, compared with the oracle on scans.
 #include <gtest/gtest.h>
 
 #include "render/create_rasterizer.h"
@@ -16,7 +16,8 @@ const bool kOffered = (test::offerWideAtomicsInSoftware(), true);
 
 constexpr std::size_t kMostPoints = 300000;
 
-/// Three real scans: from the air, from a hillside's photographs, of a statue; made ones where those are absent.
+/// Three real scans: one from the air, one from photographs of a hillside, one of a statue. Synthetic scans replace
+/// those that are absent.
 std::string scanNamed(const std::string& name) {
   if (test::dataFolder().empty())
     return "synthetic:" +
@@ -32,7 +33,7 @@ std::string scanNamed(const std::string& name) {
 
 class SamePicture : public testing::TestWithParam<const char*> {
  protected:
-  /// Ten views at 512 x 512 and one at 1920 x 1080.
+  /// Draws ten views at 512 x 512 pixels and one at 1920 x 1080.
   static std::vector<View> elevenViews(const Box& box) {
     std::vector<View> views = test::viewsAround(box, 10, 512, 512);
     views.push_back(test::viewsAround(box, 2, 1920, 1080).front());
@@ -47,7 +48,7 @@ TEST_P(SamePicture, AsTheOraclesByEveryWay) {
     STRATA_REQUIRE_CONTEXT(context, test::ContextKind::egl);
     if (backend == Backend::compute64 && !hasWideAtomics(*context)) continue;
     const auto rasterizer = createRasterizer(backend, {}, std::move(context));
-    // points settles a tie by the order of drawing.
+    // The points rasterizer settles a tie by the order of drawing.
     const double wanted = backend == Backend::points ? 0.995 : 0.999;
     std::uint64_t covered = 0, different = 0;
     for (const View& view : views) {

@@ -15,7 +15,8 @@ using test::ContextKind;
 constexpr std::uint64_t kHalfBytes = 4096;
 constexpr std::size_t kWords = 8192;
 
-/// What `buffer` holds after pieces of random length were sent to random places, many times the ring in all.
+/// Sends pieces of random length to random offsets of a buffer, many times as much as the ring holds, and returns the
+/// content of the buffer.
 void expectAllArrives(const GlFunctions& functions, GlStaging& staging) {
   GlBuffer buffer(functions, kWords * 4, gl::kStaticDraw);
   buffer.fill(0);

@@ -1,4 +1,5 @@
-// The shaders against Khronos' reference compiler, where it is installed: what Mesa takes, another driver may refuse.
+// Compiles the shaders with Khronos' reference compiler, where it is installed. Other drivers may refuse what Mesa
+// takes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -17,7 +18,7 @@ const std::string kBits32 = define("STRATA_GROUP_SIZE", "128") + define("STRATA_
                             define("STRATA_PX_AT_10_BITS", "500.0LF") + define("STRATA_PX_AT_20_BITS", "512000.0LF") +
                             define("STRATA_DEPTH_STRIDE", "2");
 
-/// What the compiler says of one stage; empty where nothing is wrong.
+/// The messages of the compiler about one stage; empty where nothing is wrong.
 std::string errorsOf(const std::string& kind, int version, const std::string& preamble,
                      const std::vector<std::string_view>& files) {
   const test::TempFolder folder;
@@ -36,7 +37,7 @@ class ShaderSyntax : public testing::Test {
   void SetUp() override {
     if (std::system("glslangValidator --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no glslangValidator here";
   }
-  /// `check(defines)` for one and two views, with and without clip region and classes.
+  /// Calls check(defines) for one and two views, with and without a clip region and classes.
   template <typename Check>
   static void forEachVariant(Check check) {
     for (const int views : {1, 2})

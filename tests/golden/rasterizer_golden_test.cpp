@@ -1,5 +1,5 @@
-// Pictures of a synthetic town against those in the repository. STRATA_ACCEPT_GOLDEN=1 replaces them; look at them
-// before you commit. A picture that differs is left as NAME.actual.png in the folder of temporary files.
+// Pictures of a synthetic town, compared with those in the repository. STRATA_ACCEPT_GOLDEN=1 replaces them; look at
+// them before you commit. A picture that differs is written to the folder of temporary files as NAME.actual.png.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace strata {
 namespace {
 
-/// Pixels that may differ by more than kSameColour in a channel: a point on the edge of its pixel falls to either side
-/// with the instruction set (fused multiply-add or not), and dilation makes four pixels of it.
+/// Pixels that may differ by more than kSameColour in a channel. A point on the edge of its pixel falls to one side or
+/// the other with and without fused multiply-add, and dilation makes four pixels of it.
 constexpr double kMaxDifferentPart = 0.002;
 constexpr int kSameColour = 2;  ///< exp and log2 of the mathematics library differ in their last bits
 

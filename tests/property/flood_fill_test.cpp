@@ -1,4 +1,5 @@
-// Hole filling by jump flooding: its searches against looking at every seed, and what it fills and leaves open.
+// Hole filling by jump flooding. Its searches are compared with looking at every seed; then come what it fills and what
+// it leaves open.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +21,7 @@ const ThreadPool& pool() {
   return two;
 }
 
-/// `share` of the pixels hold a seed, on one or two planes ahead, as far apart as pixels are.
+/// Seeds in `share` of the pixels, on one or two planes ahead, as far apart as the pixels.
 FloodSeeds randomSeeds(int width, int height, double share, int planes, std::uint32_t seed) {
   std::mt19937 random(seed);
   std::bernoulli_distribution stays(share);
@@ -42,7 +43,7 @@ FloodSeeds randomSeeds(int width, int height, double share, int planes, std::uin
   return seeds;
 }
 
-/// All that there are.
+/// All seeds of a half picture.
 std::vector<FloodPixel> seedsOf(const FloodSeeds& seeds) {
   std::vector<FloodPixel> all;
   for (const FloodPixel seed : seeds.at)
@@ -102,7 +103,7 @@ TEST(FloodLayers, KeepASparseForegroundInFrontOfADenseBackground) {
   EXPECT_GE(static_cast<double>(with), 0.999 * static_cast<double>(layers.size()));
 }
 
-/// Share of the true neighbours that were found, and how much farther on average what was found is.
+/// The share of the true neighbours that were found, and how much farther away the found ones are on average.
 struct Recall {
   double found = 0.0, farther = 0.0;
 };
@@ -191,7 +192,8 @@ TEST(FloodSeeds, KeepNormalsToAThousandth) {
   EXPECT_EQ(unpackFloodNormal(packFloodNormal(glm::vec3(0.0f))), glm::vec3(0.0f));
 }
 
-/// Points on the plane y = `distance`, one in each cell of `spacing` over [-half, half] in x and z, where keep(x, z).
+/// Points on the plane y = `distance`, one in each cell of `spacing` metres over [-half, half] in x and z, where
+/// keep(x, z) is true.
 template <typename Keep>
 std::shared_ptr<const NodeData> wall(int number, double distance, double half, double spacing, Keep keep) {
   std::mt19937 random(static_cast<std::uint32_t>(number));
@@ -245,7 +247,7 @@ TEST(FloodFill, ClosesASparseWall) {
   EXPECT_LE(open, picture.depth.size() / 100);
 }
 
-/// As coarse positions do to a scan that is finer than the pixels: its points fall onto a lattice with gaps.
+/// Puts points onto a lattice with gaps, as coarse positions do to a scan that is finer than the pixels.
 TEST(FloodFill, ClosesTheGapsBetweenPixelsWhereTheScanIsFinerThanThem) {
   const auto lattice = std::make_shared<NodeData>(*wall(1, 10.0, 12.0, 0.1, kEverywhere));  // 1.7 pixels apart
   lattice->spacing = 0.025f;
@@ -340,8 +342,8 @@ TEST(FloodFill, GivesPointsTheirSizeWhereNothingWasFilled) {
   }
 }
 
-/// How many pixels stay empty of a wall out of the lines of a scanner: points `along` metres apart on lines that are
-/// `apart` metres apart.
+/// The number of pixels that stay empty on a wall of scan lines, whose points are `along` metres apart on lines `apart`
+/// metres apart.
 std::ptrdiff_t openBetweenLines(double apart, double along, bool ellipses) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> within(0.0, 1.0);
@@ -366,7 +368,7 @@ TEST(FloodFill, LeavesFewerGapsBetweenScanLinesWithEllipsesThanWithCircles) {
   EXPECT_LT(2 * openBetweenLines(0.9, 0.08, true), openBetweenLines(0.9, 0.08, false));
 }
 
-/// A scan of a town, a share of whose points is drawn while the camera goes by slowly.
+/// A town of which only a share of the points is drawn, while the camera passes slowly.
 TEST(FloodFill, FlickersLessThanThePictureWithHoles) {
   const RenderList whole = test::makeTown(kUtm, 100.0, 600000, 1, 4), thin = test::thinned(whole, 0.1, 1);
   View view = viewOfBox(test::boundsOf(whole), {1.0, 0.8, -0.6}, 240, 180, 1.0);

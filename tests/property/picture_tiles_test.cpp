@@ -76,7 +76,7 @@ TEST(PictureTiles, GetTheNodesOfTheWholeThatReachIntoThemWithAsManyPoints) {
     const View tile =
         tileOfPicture(view, left, top, std::min(200, view.width - left), std::min(150, view.height - top));
     selectNodes(terrain.hierarchy, tile, options, some);
-    // In the same order, so that of points at equal depth the same one is seen.
+    // The order is the same too, so that among points at equal depth the same one is seen.
     const ViewVolume volume(tile);
     std::vector<SelectedNode> expected;
     for (const SelectedNode& node : whole.nodes)

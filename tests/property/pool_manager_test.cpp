@@ -1,4 +1,4 @@
-// The memory manager of the point pool against a model that looks at every place.
+// The memory manager of the point pool, compared with a model that looks at every place.
 #include "render/progressive/pool_manager.h"
 
 #include <gtest/gtest.h>

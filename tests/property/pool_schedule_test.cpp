@@ -1,4 +1,4 @@
-// Going round the point pool, against a model that remembers when each place was met.
+// The schedule of the point pool, compared with a model that remembers when each place was visited.
 #include "render/progressive/pool_schedule.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST_P(PoolTurnOf, HasBandsThatCoverThePoolInOrder) {
   EXPECT_LE(bands.size(), GetParam().bands);
 }
 
-/// A frame shows random blocks, frees others and goes on for a random number of places.
+/// Each frame shows random blocks, frees others and visits a random number of places.
 TEST_P(PoolTurnOf, MeetsEachPlaceOfItsBandsOnceAndTellsWhenGhostsAreGone) {
   const auto [size, bandCount] = GetParam();
   PoolSchedule turn(size, bandCount);
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, PoolTurnOf,
                            return std::to_string(tried.param.size) + "In" + std::to_string(tried.param.bands);
                          });
 
-/// Bands in equal shares; what a short one has too few places for is the others'.
+/// All bands get equal shares; where a short band has too few places, the others get the rest.
 TEST(PoolSchedule, GoesOnInAllBandsEvenly) {
   PoolSchedule turn(16 * 4096 - 3000, 16);
   for (const PoolSchedule::Band& band : turn.bands()) turn.shown(band.first, 1);

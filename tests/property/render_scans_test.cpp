@@ -1,4 +1,4 @@
-// Ten views of three scans, and one at full high definition, against the oracle.
+// Ten small views of three scans, and one at full HD, compared with the oracle.
 #include <gtest/gtest.h>
 
 #include "render/create_rasterizer.h"

@@ -1,4 +1,4 @@
-// Points at one place tie, whatever node, batch and precision they come from, and the lowest id is seen.
+// Points at the same position tie, whatever node, batch and precision they come from, and the lowest id is seen.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -19,8 +19,8 @@ constexpr double kStep = 0.01;
 using Nodes = std::vector<std::shared_ptr<const NodeData>>;
 using GridPoint = std::tuple<long long, long long, long long>;
 
-/// `nodes` nodes that draw from the same few thousand places, in batches of many sizes. Some nodes reach far beyond
-/// those places, so that their batches have other bits and other corners.
+/// Makes `nodes` nodes that share a few thousand positions, in batches of many sizes. Some nodes reach far beyond these
+/// positions, so that their batches have other bits and other corners.
 Nodes sharedPlaces(std::uint32_t seed, int nodes, double side) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -51,7 +51,7 @@ GridPoint placed(const RenderList& list, const ViewConstants& constants, std::ui
     const NodeData& node = *item.node;
     for (const Batch& batch : node.batches) {
       if (id >= batch.firstPoint + batch.pointCount) continue;
-      // Half a step, since a cell of one step has its middle there.
+      // A cell of one step has its middle at half a step.
       const glm::dvec3 p = pointPosition(node, batch, id, batchPrecision(constants, node, batch)) - kUtm;
       return {std::llround(2.0 * p.x / kStep), std::llround(2.0 * p.y / kStep), std::llround(2.0 * p.z / kStep)};
     }
@@ -110,8 +110,8 @@ TEST(Ties, DoNotMoveADepthWhenTheNodesChangePlaces) {
     EXPECT_EQ(drawn(list, view).depth, drawn(reversed, view).depth);
 }
 
-/// Points of one batch alone and of all batches have the same bits where the steps do not fit a float and integers take
-/// over, 400 km from the eye.
+/// 400 km from the eye, steps do not fit a float and integers take over. The points of a batch that is drawn alone
+/// still have the same bits as when all batches are drawn.
 TEST(Ties, HoldWhereStepsOutgrowAFloat) {
   const RenderList list = test::makeList(sharedPlaces(8, 6, 200.0));
   View view = viewOfBox({kUtm, kUtm + 200.0}, {1.0, 0.83, -0.71}, 300, 300, 1.0);

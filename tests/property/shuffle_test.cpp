@@ -1,4 +1,4 @@
-// Where the points of a pool lie: bijections that spread what is neighboured (Rumpler 2019, 3.2 and 4.2.2).
+// The shuffles of a pool are bijections that spread neighbours over the pool (Rumpler 2019, 3.2 and 4.2.2).
 #include "render/progressive/shuffle.h"
 
 #include <gtest/gtest.h>
@@ -36,8 +36,9 @@ bool isBijection(std::vector<std::uint32_t> places) {
   return true;
 }
 
-/// Of the points that lie in one `share` of the pool, how many have their successor there too; the most of all such
-/// shares. Where points are in spatial order, those are drawn side by side in one frame. `share` itself by chance.
+/// Divides the pool into `shares` parts. Returns the largest fraction, over all parts, of points whose successor lies
+/// in the same part. If points are in spatial order, these are drawn side by side in one frame. By chance it is 1 /
+/// shares.
 double neighboursTogether(const std::vector<std::uint32_t>& places, std::uint32_t shares) {
   const auto size = static_cast<std::uint32_t>(places.size());
   std::vector<std::uint32_t> points(shares), pairs(shares);
@@ -54,8 +55,8 @@ double neighboursTogether(const std::vector<std::uint32_t>& places, std::uint32_
   return most;
 }
 
-/// Cells of a table: how many points of each of `ranges` consecutive index ranges lie in each of `shares` of the pool.
-/// The largest distance from the expected number, in standard deviations.
+/// Counts how many points of each of `ranges` ranges of indices lie in each of `shares` parts of the pool. Returns the
+/// largest deviation from the expected count, in standard deviations.
 double unevenness(const std::vector<std::uint32_t>& places, std::uint32_t ranges, std::uint32_t shares) {
   const auto size = static_cast<std::uint32_t>(places.size());
   std::vector<std::uint32_t> cells(std::size_t{ranges} * shares);
@@ -110,8 +111,8 @@ TEST(KeyedShuffle, SpreadsEveryRangeOverEveryShareAsChanceDoes) {
     }
 }
 
-/// The pattern of Rumpler's Figures 4.6 and 4.7: sizes that are powers of two draw whole rows of neighbours in one
-/// frame.
+/// The pattern of Rumpler's Figures 4.6 and 4.7: with sizes that are powers of two, whole rows of neighbours are drawn
+/// in one frame.
 TEST(KeyedShuffle, HasNoPatternWherePerfectShuffleHasOne) {
   const std::uint32_t shares = 32;
   for (const std::uint32_t size : {1u << 20, 1u << 19, 1'000'000u, 937'500u, 786'432u}) {

@@ -12,10 +12,10 @@
 #include "converter/build/local_points.h"
 #include "core/box.h"
 
-/// Clouds of synthetic points, and how evenly some of them are spread.
+// Clouds of synthetic points, and a measure of how evenly some of them are spread.
 namespace strata::test {
 
-/// Points that own their integers.
+/// Points as integers of a grid.
 struct Cloud {
   std::vector<std::int32_t> axis[3];
   glm::dvec3 step{0.001};
@@ -30,7 +30,8 @@ inline glm::dquat anyTurn(std::mt19937_64& random) {
   return glm::normalize(glm::dquat(normal(random), normal(random), normal(random), normal(random)));
 }
 
-/// Random points of a box with the given half sizes, turned, in the middle of a cube of 2^20 steps.
+/// Random points in a box with the given half sizes, metres. The box is turned and lies in the middle of a cube of 2^20
+/// steps.
 inline Cloud turnedBox(std::mt19937_64& random, const glm::dvec3& half, std::size_t count, const glm::dquat& turn) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Cloud cloud;
@@ -42,7 +43,8 @@ inline Cloud turnedBox(std::mt19937_64& random, const glm::dvec3& half, std::siz
   return cloud;
 }
 
-/// Coefficient of variation of the distances to the nearest neighbour: 0.52 for random points of a plane, 0 on a grid.
+/// The coefficient of variation of the distances to the nearest neighbour: 0.52 for random points of a plane, 0 on a
+/// grid.
 inline double nearestNeighbourVariation(const Cloud& cloud, std::span<const std::uint32_t> shown) {
   std::vector<glm::dvec3> points;
   Box box;
@@ -72,7 +74,7 @@ inline double nearestNeighbourVariation(const Cloud& cloud, std::span<const std:
   return std::sqrt(std::max(0.0, squares / static_cast<double>(points.size()) - mean * mean)) / mean;
 }
 
-/// Largest variation at the ends of the levels, and at any of a row of prefixes.
+/// The largest variation at the ends of levels, and that at any of a series of prefixes.
 struct Evenness {
   double fullLevels = 0.0, anywhere = 0.0;
 };

@@ -18,7 +18,7 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values = std::move(left);
 }
 
-/// Nearest and farthest depth of the 3 x 3 pixels around (x, y); an infinite nearest where all are empty.
+/// The nearest and the farthest depth of the 3 x 3 pixels around (x, y). The nearest is infinite where all are empty.
 struct DepthRange {
   float nearest = std::numeric_limits<float>::infinity(), farthest = 0.0f;
 };

@@ -10,7 +10,7 @@
 namespace strata::test {
 namespace {
 
-/// In a process of its own: Mesa reads its environment once a process.
+/// True where OpenGL is llvmpipe. A process of its own finds out, because Mesa reads the environment once per process.
 bool isLlvmpipe() {
   const pid_t child = fork();
   if (child == 0) {

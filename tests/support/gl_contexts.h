@@ -13,11 +13,11 @@ enum class ContextKind { egl, osMesa };
 
 inline std::string contextName(ContextKind kind) { return kind == ContextKind::egl ? "Egl" : "OsMesa"; }
 
-/// Mesa's llvmpipe compiles and runs 64-bit atomic minima in storage blocks, but 22.3 does not say that it can. This
-/// makes it say so, where OpenGL is llvmpipe; to be called before the process makes its first context.
+/// Makes llvmpipe say that it has 64-bit atomic minima in storage blocks. It compiles and runs them, but version 22.3
+/// does not list the extension. Call this before the process makes its first context. Other drivers are left alone.
 void offerWideAtomicsInSoftware();
 
-/// Null with the reason where the machine cannot make one.
+/// Makes a context. Null, with the reason, where the machine cannot.
 inline std::unique_ptr<GlContext> tryContext(ContextKind kind, std::string& reason) {
   try {
     return kind == ContextKind::egl ? createEglContext() : createOsMesaContext();

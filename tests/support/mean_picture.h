@@ -9,7 +9,7 @@
 
 namespace strata::test {
 
-/// A picture with more than 8 bits a channel. Row 0 on top.
+/// A picture with more than 8 bits per channel. Row 0 is on top.
 struct MeanPicture {
   int width = 0;
   int height = 0;
@@ -19,9 +19,9 @@ struct MeanPicture {
   std::uint64_t coveredPixels() const;
 };
 
-/// What a scan looks like when all of its points are drawn: each pixel is the average of the points that fall into it
-/// and lie within 1 % of its front depth, the weight of each the same (Schütz 2021's blending, written plainly).
-/// All in double. The points are handed in twice, in any order, so that none has to be kept:
+/// Computes what a scan looks like when all of its points are drawn. Each pixel is the plain average of the points that
+/// fall into it and lie within 1 % of its front depth (the blending of Schütz 2021, written plainly, in double). Points
+/// are added twice, in any order, so that none has to be kept:
 ///   for every point: addDepth();  for every point: addColour();  finish()
 class MeanPictureMaker {
  public:

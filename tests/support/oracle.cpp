@@ -37,7 +37,7 @@ bool isWanted(const DrawOptions& options, const NodeData& node, std::uint32_t po
   return inBoxes;
 }
 
-/// Calls visit(id, projected) for every point of the list that `options` want.
+/// Calls visit(id, projected) for every point of the list that `options` keep.
 template <typename Visit>
 void forEachPoint(const RenderList& list, const View& view, const DrawOptions& options, Visit visit) {
   const ViewConstants constants = viewConstants(view);

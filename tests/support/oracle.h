@@ -8,12 +8,12 @@
 
 namespace strata::test {
 
-/// The picture every rasterizer must give: every point placed by pointPosition() at its batch's precision and
-/// projected in double precision, one after another; smallest float depth wins, then the lower id. No culling, but what
-/// `options` clip, filter by class and leave out by gaze. Fills depth and pointId only.
+/// The picture that every rasterizer must draw. One after another, each point is placed by pointPosition() at the
+/// precision of its batch and projected in double. The smallest float depth wins, then the lower id. Nothing is culled;
+/// only what `options` clip, filter by class or leave out by gaze is missing. Only depth and pointId are filled.
 Picture oraclePicture(const RenderList& list, const View& view, const DrawOptions& options = {});
 
-/// How a frame differs from the oracle's.
+/// How a picture differs from the oracle's.
 struct Comparison {
   std::uint64_t covered = 0;      ///< pixels where either picture has a point
   std::uint64_t different = 0;    ///< of these: another id
@@ -25,8 +25,9 @@ struct Comparison {
   }
 };
 
-/// A difference counts as explained where the two points are a tie (depths equal within 1e-6 of themselves), or one of
-/// them lies within 1e-3 pixels of its pixel's edge, or within 1e-6 of the near plane.
+/// Compares `picture` with the oracle's. A difference counts as explained where the two points tie (their depths differ
+/// by at most 1e-6 of themselves), or one of them lies within 1e-3 pixels of its pixel's edge, or within 1e-6 of the
+/// near plane.
 Comparison compareToOracle(const RenderList& list, const View& view, const Picture& picture,
                            const DrawOptions& options = {});
 

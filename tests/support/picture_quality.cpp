@@ -15,7 +15,7 @@ constexpr double kNoWindow = -2.0;
 
 glm::dvec3 unpack(std::uint32_t colour) { return {colour & 255u, colour >> 8 & 255u, colour >> 16 & 255u}; }
 
-/// ITU-R BT.601.
+/// The luminance of a colour by ITU-R BT.601.
 double luminance(const glm::dvec3& rgb) { return 0.299 * rgb.x + 0.587 * rgb.y + 0.114 * rgb.z; }
 
 double decibels(double meanSquare) {
@@ -31,7 +31,7 @@ std::array<double, 2 * kRadius + 1> window() {
   return weights;
 }
 
-/// Weighted mean of the 11 x 11 neighbourhood; nothing of use within kRadius of the border.
+/// The weighted mean of the 11 x 11 pixels around each pixel. Values within kRadius of the border are undefined.
 std::vector<double> blurred(const std::vector<double>& values, int width, int height) {
   static const auto weights = window();
   std::vector<double> rows(values.size(), 0.0), result(values.size(), 0.0);

@@ -6,8 +6,8 @@
 
 namespace strata::test {
 
-/// How near a drawn picture comes to the reference, over the pixels that the reference covers. A pixel that the drawn
-/// picture leaves empty counts with the background colour that it has there.
+/// How close a drawn picture comes to the reference, in the pixels that the reference covers. A pixel that the drawn
+/// picture leaves empty counts with its background colour.
 struct PictureQuality {
   double covered = 1.0;  ///< share of the pixels in which the drawn picture has a point too
   double psnr = 0.0;     ///< dB, RGB, peak 255; +inf for equal pictures
@@ -15,10 +15,10 @@ struct PictureQuality {
 };
 PictureQuality pictureQuality(const MeanPicture& reference, const Picture& drawn);
 
-/// Share of the reference's pixels that the frame has a point in.
+/// The share of the reference's covered pixels in which `drawn` has a point.
 double coveredShare(const MeanPicture& reference, const Picture& drawn);
 
-/// PSNR in dB of two drawn pictures over all pixels, RGB; +inf when they are equal.
+/// The PSNR of two drawn pictures over all pixels, RGB, in dB; +inf when they are equal.
 double psnr(const Picture& a, const Picture& b);
 
 /// The SSIM map (Wang, Bovik, Sheikh, Simoncelli 2004: 11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03,

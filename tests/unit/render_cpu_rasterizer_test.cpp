@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kAgreement = 0.999;
 const glm::dvec3 kUtm(456789.123, 5412345.678, 312.5);
-/// No symmetry of a grid, on which many points would have one depth and rounding decide between them.
+/// Has none of the symmetries of a grid. With them many points would have the same depth, and rounding would decide.
 const glm::dvec3 kDirection(1.0, 0.83, -0.71);
 
 Picture drawn(const RenderList& list, const View& view, int threads = 1, const DrawOptions& options = {}) {

@@ -98,7 +98,7 @@ TEST(HighQualityShading, IsTheMeanColourOfThePointsWithinOnePerCentOfTheFront) {
         }
     }
     EXPECT_GT(blended, 100u);
-    // A point on a pixel's edge, or at the very end of the range, falls to either side.
+    // A point on a pixel's edge, or at the very end of the range, may fall to either side.
     EXPECT_LE(static_cast<double>(different), 0.003 * static_cast<double>(covered));
   }
 }
@@ -312,7 +312,7 @@ TEST(Precision, IsShownAsItWasDrawn) {
   }
 }
 
-/// fillHoles() as its comment says it.
+/// fillHoles() written plainly, as its comment describes it.
 std::vector<PackedPixel> filledPlainly(const std::vector<PackedPixel>& from, int width, int height, int side) {
   std::vector<PackedPixel> to = from;
   const auto depthAt = [&](int x, int y) { return pixelDepth(from[static_cast<std::size_t>(y * width + x)]); };
