@@ -29,7 +29,7 @@ TEST(PictureTiles, WithoutTheirMarginShowSeams) {
     if (!options.edl && options.fill == 1 && options.pointSize == 1 && options.pointMetres == 0.0f) continue;
     Picture whole;
     rasterizer->draw(list, view, options, whole);
-    EXPECT_NE(test::drawnInTiles(*rasterizer, list, view, options, 0, 1).pixels, whole.colour) << name;
+    EXPECT_NE(test::drawnInTiles(*rasterizer, list, view, options, {0, 1}).pixels, whole.colour) << name;
   }
 }
 

@@ -43,9 +43,9 @@ std::vector<std::pair<std::string, DrawOptions>> effectsOnPictures(const RenderL
 }
 
 Image drawnInTiles(Rasterizer& rasterizer, const RenderList& list, const View& view, const DrawOptions& options,
-                   int margin, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  const auto cuts = [&](int length) {
+                   const TileCuts& cuts) {
+  std::mt19937 random(cuts.seed);
+  const auto endsOfTiles = [&](int length) {
     std::vector<int> at{0};
     while (at.back() < length)
       at.push_back(std::min(at.back() + std::uniform_int_distribution<int>(1, 150)(random), length));
@@ -53,12 +53,12 @@ Image drawnInTiles(Rasterizer& rasterizer, const RenderList& list, const View& v
   };
   Image image{view.width, view.height, {}};
   image.pixels.resize(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
-  const std::vector<int> columns = cuts(view.width), rows = cuts(view.height);
+  const std::vector<int> columns = endsOfTiles(view.width), rows = endsOfTiles(view.height);
   Picture picture;
   for (std::size_t r = 0; r + 1 < rows.size(); ++r)
     for (std::size_t c = 0; c + 1 < columns.size(); ++c) {
       const View tile = tileOfPicture(view, columns[c], rows[r], columns[c + 1] - columns[c], rows[r + 1] - rows[r]);
-      const View drawn = withMargin(tile, margin);
+      const View drawn = withMargin(tile, cuts.margin);
       rasterizer.draw(list, drawn, options, picture);
       copyTile(picture, drawn, tile, image, {columns[c], rows[r]});
     }
@@ -74,7 +74,7 @@ void expectTilesMakeTheWhole(Rasterizer& rasterizer, int views) {
     for (const auto& [name, options] : effectsOnPictures(list)) {
       Picture whole;
       rasterizer.draw(list, view, options, whole);
-      const Image tiles = drawnInTiles(rasterizer, list, view, options, tileMargin(options), ++seed);
+      const Image tiles = drawnInTiles(rasterizer, list, view, options, {tileMargin(options), ++seed});
       std::size_t different = 0;
       for (std::size_t i = 0; i < tiles.pixels.size(); ++i) different += tiles.pixels[i] != whole.colour[i] ? 1 : 0;
       EXPECT_EQ(different, 0u) << rasterizer.name() << ", " << name << ", seed " << seed;
