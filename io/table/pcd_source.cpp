@@ -10,7 +10,10 @@
 #include "io/table/compressed_pcd.h"
 #include "io/table/pcd_header.h"
 #include "io/table/record_source.h"
+#include "io/table/text_lines.h"
+#include "io/table/text_survey.h"
 #include "io/table/text_table.h"
+#include "io/table/text_table_source.h"
 
 namespace strata {
 namespace {
@@ -40,11 +43,10 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
     if (field.type == ScalarType::f32 && isNamed(field, {"x", "y", "z"})) field.type = ScalarType::f64;
   }
   packFields(table);
-  std::uint64_t found = 0;
-  std::uint64_t line = table.firstLine;
-  table.end = skipLines(*bytes, table.begin, header.points, found, line);
-  if (found < header.points && !skipDamaged)
-    throw Error(bytes->name(), "the file ends early, found " + std::to_string(found) + " points (expected " +
+  const SkippedLines body = skipLines(*bytes, table.begin, header.points, table.firstLine);
+  table.end = body.end;
+  if (body.points < header.points && !skipDamaged)
+    throw Error(bytes->name(), "the file ends early, found " + std::to_string(body.points) + " points (expected " +
                                    std::to_string(header.points) + ")");
   TextSurvey survey = surveyText(*bytes, table);
   return openTextTable(std::move(bytes), std::move(table), std::move(survey));

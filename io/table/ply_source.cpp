@@ -10,7 +10,10 @@
 #include "io/file/byte_source.h"
 #include "io/table/ply_header.h"
 #include "io/table/record_source.h"
+#include "io/table/text_lines.h"
+#include "io/table/text_survey.h"
 #include "io/table/text_table.h"
+#include "io/table/text_table_source.h"
 
 namespace strata {
 namespace {
@@ -112,16 +115,18 @@ std::unique_ptr<PointSource> openAscii(std::unique_ptr<ByteSource> bytes, const 
   table.skipDamaged = skipDamaged;
   table.begin = header.headerBytes;
   table.firstLine = header.headerLines + 1;
-  std::uint64_t found = 0;
-  for (std::size_t i = 0; i < header.vertex; ++i)
-    if (!header.elements[i].properties.empty())
-      table.begin = skipLines(*bytes, table.begin, header.elements[i].count, found, table.firstLine);
+  for (std::size_t i = 0; i < header.vertex; ++i) {
+    if (header.elements[i].properties.empty()) continue;
+    const SkippedLines element = skipLines(*bytes, table.begin, header.elements[i].count, table.firstLine);
+    table.begin = element.end;
+    table.firstLine = element.nextLine;
+  }
   const PlyElement& vertex = header.elements[header.vertex];
   table.claimedPoints = vertex.count;
-  std::uint64_t line = table.firstLine;
-  table.end = skipLines(*bytes, table.begin, vertex.count, found, line);
-  if (found < vertex.count && !skipDamaged)
-    throw Error(bytes->name(), "the file ends early, found " + std::to_string(found) + " points (expected " +
+  const SkippedLines body = skipLines(*bytes, table.begin, vertex.count, table.firstLine);
+  table.end = body.end;
+  if (body.points < vertex.count && !skipDamaged)
+    throw Error(bytes->name(), "the file ends early, found " + std::to_string(body.points) + " points (expected " +
                                    std::to_string(vertex.count) + ")");
   for (const PlyProperty& property : vertex.properties) {
     if (property.countType) {

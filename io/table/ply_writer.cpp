@@ -2,14 +2,12 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 #include <set>
 #include <span>
-#include <system_error>
 
 #include "core/error.h"
 #include "core/octahedral.h"
-#include "io/file/output_file.h"
+#include "io/file/part_file.h"
 #include "io/scan/scan_writer.h"
 
 namespace strata {
@@ -57,20 +55,14 @@ std::string propertyName(std::string name, std::set<std::string>& used) {
 class PlyWriter final : public ScanWriter {
  public:
   PlyWriter(const std::string& path, const StoreInfo& info, std::uint64_t points)
-      : path_(path), info_(info), expected_(points), file_(path + ".part") {
+      : path_(path), info_(info), expected_(points), file_(path) {
     rgb_ = info_.layout.find(attribute::kRgb);
     const std::string header = headerText();
-    file_.append(std::as_bytes(std::span(header)));
+    file_->append(std::as_bytes(std::span(header)));
     recordBytes_ = 3 * sizeof(double) + (rgb_ >= 0 ? 3 : 0);
     for (std::size_t i = 0; i < info_.layout.attributes().size(); ++i)
       if (isPlain(i)) recordBytes_ += writtenBytes(info_.layout.attributes()[i]);
   }
-  ~PlyWriter() override {
-    std::error_code ignored;
-    if (!finished_) std::filesystem::remove(file_.path(), ignored);
-  }
-  PlyWriter(const PlyWriter&) = delete;
-  PlyWriter& operator=(const PlyWriter&) = delete;
 
   void write(const NodePoints& points) override {
     const std::size_t stride = info_.layout.stride();
@@ -88,13 +80,7 @@ class PlyWriter final : public ScanWriter {
     if (written_ != expected_)
       throw Error(
           path_, "found " + std::to_string(written_) + " points to write (expected " + std::to_string(expected_) + ")");
-    file_.finish();
-    std::error_code failure;
-    std::filesystem::rename(file_.path(), path_, failure);
-    if (failure) throw Error(path_, "renaming: " + failure.message());
-    finished_ = true;
-    const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-    syncFolder(folder.empty() ? "." : folder.string());
+    file_.keep();
   }
 
  private:
@@ -180,19 +166,18 @@ class PlyWriter final : public ScanWriter {
   }
 
   void flush() {
-    file_.append(buffer_);
+    file_->append(buffer_);
     buffer_.clear();
   }
 
   std::string path_;
   StoreInfo info_;
   std::uint64_t expected_;
-  OutputFile file_;
+  PartFile file_;
   int rgb_ = -1;
   std::size_t recordBytes_ = 0;
   std::vector<std::byte> buffer_;
   std::uint64_t written_ = 0;
-  bool finished_ = false;
 };
 
 }  // namespace

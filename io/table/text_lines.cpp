@@ -149,6 +149,18 @@ LineKind lineKind(std::string_view line, const TextTable& table) {
   return LineKind::point;
 }
 
+SkippedLines skipLines(const ByteSource& bytes, std::uint64_t begin, std::uint64_t points, std::uint64_t firstLine) {
+  LineReader reader(bytes, begin, bytes.size());
+  SkippedLines skipped{begin, 0, firstLine};
+  std::string_view line;
+  while (skipped.points < points && reader.next(line)) {
+    skipped.end = reader.offset();
+    ++skipped.nextLine;
+    if (lineKind(line, TextTable{}) == LineKind::point) ++skipped.points;
+  }
+  return skipped;
+}
+
 bool pickColumns(const std::vector<std::string_view>& tokens, const TextTable& table,
                  std::vector<std::string_view>& picked) {
   picked.resize(table.columns.size());

@@ -11,7 +11,9 @@
 #include "io/file/byte_source.h"
 #include "io/table/record_mapping.h"
 #include "io/table/text_format.h"
+#include "io/table/text_survey.h"
 #include "io/table/text_table.h"
+#include "io/table/text_table_source.h"
 
 namespace strata {
 namespace {

@@ -1,23 +1,24 @@
+#include "io/table/text_survey.h"
+
 #include <algorithm>
 #include <atomic>
-#include <cctype>
 #include <cmath>
 #include <cstring>
-#include <optional>
+#include <exception>
 #include <span>
 #include <thread>
 
 #include "core/error.h"
+#include "io/scan/point_source.h"
 #include "io/table/text_lines.h"
-#include "io/table/text_table.h"
 
 namespace strata {
 namespace {
 
 constexpr std::uint64_t kPartBytes = std::uint64_t{32} << 20;
 constexpr unsigned kMostThreads = 16;
-constexpr std::uint64_t kStopLines = 4096;       ///< between looks at whether to stop
-constexpr std::size_t kMostCountLines = 100000;  ///< in one part
+constexpr std::uint64_t kStopLines = 4096;       ///< lines read between two looks at TextTable::stop
+constexpr std::size_t kMostCountLines = 100000;  ///< of one part
 
 /// A PTS line that says how many points follow.
 struct CountLine {
@@ -26,7 +27,7 @@ struct CountLine {
   std::uint64_t line = 0;  ///< within the part, from 0
 };
 
-/// What one thread finds in one part.
+/// The findings of one thread in one part.
 struct PartSurvey {
   std::vector<ColumnSurvey> columns;
   std::vector<CountLine> countLines;
@@ -34,7 +35,7 @@ struct PartSurvey {
   std::uint64_t points = 0;
   std::uint64_t damaged = 0;
   std::uint64_t lines = 0;
-  std::string fault;           ///< of the line `lines - 1`; empty = none
+  std::string fault;           ///< why the last line read cannot be read; empty when it can
   std::exception_ptr failure;  ///< reading failed
 };
 
@@ -62,7 +63,7 @@ std::vector<TextPart> cutParts(const ByteSource& bytes, const TextTable& table) 
   return parts;
 }
 
-/// Digits of a number as it is written; `token` is known to be one.
+/// Adds a number, written as `token`, to the survey of its column.
 void describe(std::string_view token, double value, ColumnSurvey& column) {
   column.range.add(value);
   int digits = 0, zeros = 0, decimals = 0, trailing = 0, exponent = 0;

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "io/table/text_format.h"
-#include "io/table/text_table.h"
+#include "io/table/text_table_source.h"
 
 namespace {
 
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     table.end = size;
     strata::packFields(table);
     strata::TextSurvey survey = strata::surveyText(*bytes, table);
-    const auto source = strata::openTextTable(std::move(bytes), std::move(table), std::move(survey), 0, "text");
+    const auto source = strata::openTextTable(std::move(bytes), std::move(table), std::move(survey));
     strata::PointBlock block;
     for (std::size_t part = 0; part < source->partCount(); ++part) {
       const auto reader = source->openPart(part);
