@@ -12,7 +12,7 @@
 #include "io/file/byte_source.h"
 #include "io/las/las_source.h"
 #include "io/scan/point_source.h"
-#include "io/synthetic/synthetic_source.h"
+#include "io/synthetic/shape_source.h"
 #include "io/table/pcd_source.h"
 #include "io/table/ply_source.h"
 #include "io/table/text_source.h"

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/synthetic/city.h"
 #include "io/synthetic/scene_builder.h"
+#include "io/synthetic/street_grid.h"
 
 namespace strata::synthetic {
 namespace {
@@ -20,9 +20,17 @@ void addChimney(SceneBuilder& b, const glm::vec2& at, float foot, float top) {
   b.block({at.x, at.y, foot}, {0.6f, 0.6f, top - foot}, Material::brick);
 }
 
-/// Small house fronts on a roof's slope. `out` points from the ridge to the street.
-void addDormers(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, float eaves, float slope,
-                const glm::vec2& out, std::uint32_t seed) {
+/// One house of a row. Its ridge runs along its street; corner houses have hipped roofs.
+struct House {
+  glm::vec2 min, max;  ///< outer walls
+  int storeys;
+  glm::vec2 out;  ///< from the ridge to the street
+  bool corner;
+};
+
+/// Small house fronts on the slope of the roof.
+void addDormers(SceneBuilder& b, const House& house, float eaves, float slope, std::uint32_t seed) {
+  const auto& [min, max, storeys, out, corner] = house;
   const bool alongX = out.x == 0.0f;
   const float length = alongX ? max.x - min.x : max.y - min.y;
   const int count = static_cast<int>(length / 3.6f);
@@ -40,13 +48,12 @@ void addDormers(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, flo
     const glm::vec2 half = across * 0.7f + glm::abs(out) * 0.02f;
     b.box({face.x - half.x, face.y - half.y, z + 0.45f}, {face.x + half.x, face.y + half.y, z + 1.35f}, Material::glass,
           seed);
-    addPitchedRoof(b, low - 0.05f, high + 0.05f, z + 1.5f, 0.8f, !alongX, false, Material::tiles, seed);
+    addPitchedRoof(b, {low - 0.05f, high + 0.05f, z + 1.5f, 0.8f, !alongX, false}, Material::tiles, seed);
   }
 }
 
-/// One house of a row. `out` points to its street; its ridge runs along the street, corner houses have hipped roofs.
-void addHouse(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, int storeys, const glm::vec2& out,
-              bool corner) {
+void addHouse(SceneBuilder& b, const House& house) {
+  const auto& [min, max, storeys, out, corner] = house;
   const std::uint32_t seed = b.newSeed();
   const Material wall = facade(b);
   const float eaves = kFloor + static_cast<float>(storeys) * (wall == Material::stone ? 3.5f : kStorey) + 0.5f;
@@ -63,9 +70,9 @@ void addHouse(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, int s
   // Cornice below the eaves.
   b.box({min.x - 0.18f, min.y - 0.18f, eaves - 0.25f}, {max.x + 0.18f, max.y + 0.18f, eaves}, Material::sandstone,
         seed);
-  addPitchedRoof(b, min - 0.25f, max + 0.25f, eaves, slope, out.x == 0.0f, corner, cover, seed);
+  addPitchedRoof(b, {min - 0.25f, max + 0.25f, eaves, slope, out.x == 0.0f, corner}, cover, seed);
   const float ridge = eaves + slope * 0.5f * (out.x == 0.0f ? max.y - min.y : max.x - min.x);
-  if (!corner && b.random.chance(0.55f)) addDormers(b, min, max, eaves, slope, out, seed);
+  if (!corner && b.random.chance(0.55f)) addDormers(b, house, eaves, slope, seed);
   const glm::vec2 spot = glm::mix(min, max, glm::vec2(b.random.between(0.3f, 0.4f), b.random.between(0.3f, 0.4f)));
   addChimney(b, spot, eaves, ridge + 0.5f);
 }
@@ -80,15 +87,15 @@ void addRow(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, const g
     glm::vec2 low = min, high = max;
     low[axis] = at;
     high[axis] = at + width;
-    addHouse(b, low, high, std::max(2, storeys + b.random.below(3) - 1), out, false);
+    addHouse(b, {low, high, std::max(2, storeys + b.random.below(3) - 1), out, false});
     at += width;
   }
 }
 
 }  // namespace
 
-void addPitchedRoof(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max, float eaves, float slope,
-                    bool ridgeAlongX, bool hip, Material material, std::uint32_t seed) {
+void addPitchedRoof(SceneBuilder& b, const PitchedRoof& roof, Material material, std::uint32_t seed) {
+  const auto& [min, max, eaves, slope, ridgeAlongX, hip] = roof;
   const glm::vec2 half = (max - min) * 0.5f;
   const float run = hip ? std::min(half.x, half.y) : ridgeAlongX ? half.y : half.x;
   const glm::vec2 slopes = hip ? glm::vec2(slope) : ridgeAlongX ? glm::vec2(0.0f, slope) : glm::vec2(slope, 0.0f);
@@ -100,7 +107,7 @@ void addPerimeterBlock(SceneBuilder& b, const glm::vec2& min, const glm::vec2& m
   const int storeys = 3 + b.random.below(3);
   for (const glm::vec2& corner :
        {min, glm::vec2(max.x - kDepth, min.y), glm::vec2(min.x, max.y - kDepth), max - kDepth}) {
-    addHouse(b, corner, corner + kDepth, storeys + b.random.below(2), {0.0f, 1.0f}, true);
+    addHouse(b, {corner, corner + kDepth, storeys + b.random.below(2), {0.0f, 1.0f}, true});
   }
   addRow(b, {min.x + kDepth, min.y}, {max.x - kDepth, min.y + kDepth}, {0.0f, -1.0f}, storeys);
   addRow(b, {min.x + kDepth, max.y - kDepth}, {max.x - kDepth, max.y}, {0.0f, 1.0f}, storeys);
@@ -128,7 +135,7 @@ void addVillas(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max) {
       continue;
     }
     const glm::vec2 half(b.random.between(4.2f, 5.8f), b.random.between(4.2f, 5.8f));
-    addHouse(b, middle - half, middle + half, 2, {0.0f, 1.0f}, true);
+    addHouse(b, {middle - half, middle + half, 2, {0.0f, 1.0f}, true});
     for (int tree = 0; tree < 2; ++tree) {
       const glm::vec2 at = corner + glm::vec2(b.random.between(1.8f, 2.6f), b.random.between(2.0f, lot.y - 2.0f));
       if (b.random.chance(0.4f))
@@ -152,7 +159,7 @@ void addTowers(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max) {
     b.box({at.x - half.x, at.y - half.y, 7.2f}, {at.x + half.x, at.y + half.y, height}, Material::curtain, b.newSeed())
         .windowSides = side::kAll;
     b.block({at.x, at.y, height}, {9.0f, 11.0f, 3.0f}, Material::metal);
-    b.cone({at.x, at.y, height + 3.0f}, 0.25f, 9.0f, 0.3f, Material::metal);
+    b.cone({at.x, at.y, height + 3.0f}, {0.25f, 9.0f, 0.3f}, Material::metal);
   }
   for (int i = 0; i < 8; ++i) {  // on the podium's roof
     b.block({b.random.between(min.x + 6.0f, max.x - 6.0f), b.random.between(min.y + 6.0f, max.y - 6.0f), 7.2f},
@@ -173,8 +180,8 @@ void addChurch(SceneBuilder& b, const glm::vec3& at) {
     for (const float sign : {-1.0f, 1.0f})
       b.block({along, y + sign * 10.4f, z}, {0.7f, 1.0f, 5.4f}, Material::sandstone, seed);
   }
-  b.cone({x + 13.0f, y, z}, 5.4f, 11.0f, 1.0f, Material::sandstone, seed);  // apse
-  b.cone({x + 13.0f, y, z + 11.0f}, 5.8f, 5.0f, 0.0f, Material::slate, seed);
+  b.cone({x + 13.0f, y, z}, {5.4f, 11.0f, 1.0f}, Material::sandstone, seed);  // apse
+  b.cone({x + 13.0f, y, z + 11.0f}, {5.8f, 5.0f, 0.0f}, Material::slate, seed);
   // Tower in front of the nave, with a clock on every side and a spire.
   const float tx = x - 19.0f;
   b.box({tx - 4.2f, y - 4.2f, z}, {tx + 4.2f, y + 4.2f, z + 22.0f}, Material::church, seed + 2).windowSides =
@@ -188,7 +195,7 @@ void addChurch(SceneBuilder& b, const glm::vec3& at) {
   b.roof({tx - 4.0f, y - 4.0f, z + 31.6f}, {tx + 4.0f, y + 4.0f, z + 52.0f}, {5.1f, 5.1f}, Material::slate, seed);
   for (const glm::vec2& corner :
        {glm::vec2(-1.0f, -1.0f), glm::vec2(-1.0f, 1.0f), glm::vec2(1.0f, -1.0f), glm::vec2(1.0f, 1.0f)}) {
-    b.cone({tx + corner.x * 3.9f, y + corner.y * 3.9f, z + 31.6f}, 0.7f, 4.5f, 0.0f, Material::sandstone, seed);
+    b.cone({tx + corner.x * 3.9f, y + corner.y * 3.9f, z + 31.6f}, {0.7f, 4.5f, 0.0f}, Material::sandstone, seed);
   }
   b.block({tx, y, z + 51.5f}, {0.15f, 0.15f, 3.0f}, Material::lamp);
   b.block({tx, y, z + 53.4f}, {0.15f, 1.3f, 0.15f}, Material::lamp);

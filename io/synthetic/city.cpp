@@ -1,10 +1,11 @@
-#include "io/synthetic/city.h"
+#include "io/synthetic/scenes.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "io/synthetic/scanner.h"
 #include "io/synthetic/scene_builder.h"
+#include "io/synthetic/street_grid.h"
 
 namespace strata::synthetic {
 namespace {
@@ -28,9 +29,9 @@ void addPark(SceneBuilder& b, const glm::vec2& min, const glm::vec2& max) {
   const glm::vec2 middle = (min + max) * 0.5f;
   b.box({min.x, middle.y - 1.5f, 0.0f}, {max.x, middle.y + 1.5f, kKerb + 0.08f}, Material::gravel);
   b.box({middle.x - 1.5f, min.y, 0.0f}, {middle.x + 1.5f, max.y, kKerb + 0.08f}, Material::gravel);
-  b.cone({middle.x, middle.y, 0.0f}, 9.5f, kKerb + 0.09f, 1.0f, Material::gravel);
-  b.cone({middle.x, middle.y, 0.0f}, 7.0f, kKerb + 0.14f, 1.0f, Material::sandstone);
-  b.cone({middle.x, middle.y, 0.0f}, 6.6f, kKerb + 0.16f, 1.0f, Material::water);
+  b.cone({middle.x, middle.y, 0.0f}, {9.5f, kKerb + 0.09f, 1.0f}, Material::gravel);
+  b.cone({middle.x, middle.y, 0.0f}, {7.0f, kKerb + 0.14f, 1.0f}, Material::sandstone);
+  b.cone({middle.x, middle.y, 0.0f}, {6.6f, kKerb + 0.16f, 1.0f}, Material::water);
   for (const float sign : {-1.0f, 1.0f}) {
     addBench(b, {middle.x + sign * 12.0f, middle.y + 2.2f, kKerb + 0.06f}, true);
     addBench(b, {middle.x - 2.4f, middle.y + sign * 12.0f, kKerb + 0.06f}, false);
@@ -172,14 +173,14 @@ std::unique_ptr<ScannerScan> makeCity(std::uint64_t points, std::uint64_t seed) 
   const float low = -kOutskirts, high = static_cast<float>(blocks) * kPitch + kOutskirts;
   Scene scene(std::move(b.primitives), glm::vec2(low), glm::vec2(high), kCellM);
   constexpr double kMargin = 0.05;  // more than the noise of the range
-  ShapeExtent frame;
-  frame.origin = kOrigin;
-  frame.min = {static_cast<double>(low) - kMargin, static_cast<double>(low) - kMargin, -kMargin};
-  frame.max = {static_cast<double>(high) + kMargin, static_cast<double>(high) + kMargin,
-               static_cast<double>(scene.top()) + kMargin};
+  ShapeExtent extent;
+  extent.origin = kOrigin;
+  extent.min = {static_cast<double>(low) - kMargin, static_cast<double>(low) - kMargin, -kMargin};
+  extent.max = {static_cast<double>(high) + kMargin, static_cast<double>(high) + kMargin,
+                static_cast<double>(scene.top()) + kMargin};
   std::vector<Station> stations = stationsFor(scene, blocks);
-  return std::make_unique<ScannerScan>(std::move(scene), Material::street, Lighting{}, std::move(stations), frame,
-                                       points, seed);
+  return std::make_unique<ScannerScan>(
+      ScannedScene{std::move(scene), Material::street, Lighting{}, std::move(stations), extent}, points, seed);
 }
 
 }  // namespace strata::synthetic

@@ -1,7 +1,8 @@
+#include "io/synthetic/facade.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include "io/synthetic/material.h"
 #include "io/synthetic/random.h"
 
 namespace strata::synthetic {
@@ -47,19 +48,24 @@ struct Opening {
   }
 };
 
-Opening openingOf(const FacadeStyle& style, std::uint32_t seed, int columnIndex, int columns, int level, float pitch,
-                  float storey) {
+/// One cell of the wall's grid, `pitch` x `storey` metres.
+struct WallCell {
+  int column, columns, level;
+  float pitch, storey;
+};
+
+Opening openingOf(const FacadeStyle& style, const WallCell& cell, std::uint32_t seed) {
   Opening opening{-style.halfWidth, style.halfWidth, style.sill, style.head};
-  if (style.storey <= 0.0f && style.arched) opening.top = storey - style.halfWidth - 1.4f;
-  opening.right = std::min(opening.right, pitch * 0.46f);
+  if (style.storey <= 0.0f && style.arched) opening.top = cell.storey - style.halfWidth - 1.4f;
+  opening.right = std::min(opening.right, cell.pitch * 0.46f);
   opening.left = -opening.right;
   opening.archTop = style.arched ? 1.0f : 0.0f;
-  if (style.groundFloor && level == 0) {
-    const int door = static_cast<int>(cellHash(3, 0, seed) * static_cast<float>(columns));
-    if (columnIndex == door) {
+  if (style.groundFloor && cell.level == 0) {
+    const int door = static_cast<int>(cellHash(3, 0, seed) * static_cast<float>(cell.columns));
+    if (cell.column == door) {
       opening = {-0.6f, 0.6f, 0.02f, 2.35f, 0.0f, Opening::Kind::door};
     } else if (cellHash(4, 0, seed) < 0.45f) {
-      opening = {-pitch * 0.42f, pitch * 0.42f, 0.45f, 2.7f, 0.0f, Opening::Kind::shop};
+      opening = {-cell.pitch * 0.42f, cell.pitch * 0.42f, 0.45f, 2.7f, 0.0f, Opening::Kind::shop};
     }
   }
   return opening;
@@ -117,69 +123,74 @@ Surface paneSurface(Material material, const Opening& opening, float u, float v,
   return surface;
 }
 
-/// Moves the point from the wall's face along the ray to the pane or to the side of the opening.
-Surface enterOpening(Material material, const Opening& opening, float depth, float u, float v, int axisU,
-                     std::uint32_t seed, const glm::vec3& direction, WallHit& hit) {
-  const float inwards = std::max(-glm::dot(direction, hit.normal), 1e-3f);
+/// A ray at the face of a wall: its place in the cell, and the horizontal axis along the wall.
+struct WallRay {
+  float u, v;
+  int axisU;
+  glm::vec3 direction, normal;
+};
+
+/// Follows the ray from the wall's face to the pane, `depth` metres behind it, or to the side of the opening.
+FacadeHit enterOpening(Material material, const Opening& opening, float depth, const WallRay& ray, std::uint32_t seed) {
+  const float u = ray.u, v = ray.v;
+  const float inwards = std::max(-glm::dot(ray.direction, ray.normal), 1e-3f);
   const float through = depth / inwards;
-  const float du = direction[axisU], dv = direction.z;
-  if (opening.holds(u + du * through, v + dv * through)) {
-    hit.deeper = through;
-    return paneSurface(material, opening, u + du * through, v + dv * through, seed);
-  }
+  const float du = ray.direction[ray.axisU], dv = ray.direction.z;
+  if (opening.holds(u + du * through, v + dv * through))
+    return {paneSurface(material, opening, u + du * through, v + dv * through, seed), ray.normal, through};
   const float sideways = du == 0.0f ? through : ((du > 0.0f ? opening.right : opening.left) - u) / du;
   const float upwards = dv == 0.0f ? through : ((dv > 0.0f ? opening.top : opening.bottom) - v) / dv;
   const bool jamb = sideways < upwards || upwards < 0.0f;
+  FacadeHit hit{{{0.74f, 0.71f, 0.66f}, 0.6f, 0.0f, 6}, glm::vec3(0.0f)};
   hit.deeper = std::clamp(jamb ? sideways : upwards, 0.0f, through);
-  hit.normal = glm::vec3(0.0f);
   if (jamb)
-    hit.normal[axisU] = du > 0.0f ? -1.0f : 1.0f;
+    hit.normal[ray.axisU] = du > 0.0f ? -1.0f : 1.0f;
   else
     hit.normal.z = dv > 0.0f ? -1.0f : 1.0f;
-  return {{0.74f, 0.71f, 0.66f}, 0.6f, 0.0f, 6};
+  return hit;
 }
 
 }  // namespace
 
-bool hasWindows(Material material) {
-  return material == Material::brick || material == Material::plaster || material == Material::stone ||
-         material == Material::curtain || material == Material::church || material == Material::officeWall;
-}
-
-Surface facadeSurface(Material material, std::uint32_t seed, std::uint8_t windowSides, const glm::vec3& position,
-                      const glm::vec3& size, const glm::vec3& direction, WallHit& hit) {
-  const int axisN = std::abs(hit.normal.x) > 0.5f ? 0 : 1, axisU = 1 - axisN;
-  const std::uint8_t sideBit = axisN == 0 ? (hit.normal.x < 0.0f ? side::kWest : side::kEast)
-                                          : (hit.normal.y < 0.0f ? side::kSouth : side::kNorth);
-  const bool wall = std::abs(hit.normal.z) < 0.5f && (windowSides & sideBit) != 0;
-  if (!wall) return plainSurface(material, seed, position, hit.local, size, hit.normal);
+FacadeHit hitFacade(const SurfacePoint& point, std::uint8_t windowSides, const glm::vec3& direction) {
+  const glm::vec3 &normal = point.normal, &size = point.size, &local = point.local;
+  const Material material = point.material;
+  const std::uint32_t seed = point.seed;
+  const int axisN = std::abs(normal.x) > 0.5f ? 0 : 1, axisU = 1 - axisN;
+  const std::uint8_t sideBit =
+      axisN == 0 ? (normal.x < 0.0f ? side::kWest : side::kEast) : (normal.y < 0.0f ? side::kSouth : side::kNorth);
+  const bool wall = std::abs(normal.z) < 0.5f && (windowSides & sideBit) != 0;
+  const auto onWall = [&](const Surface& surface) { return FacadeHit{surface, normal}; };
+  if (!wall) return onWall(plainSurface(point));
 
   const FacadeStyle style = styleOf(material, seed);
   const float storey = style.storey > 0.0f ? style.storey : size.z;
   const int columns = std::max(1, static_cast<int>(size[axisU] / style.pitch));
   const float pitch = size[axisU] / static_cast<float>(columns);
-  const int columnIndex = std::clamp(static_cast<int>(hit.local[axisU] / pitch), 0, columns - 1);
-  const int level = static_cast<int>(hit.local.z / storey);
-  const float u = hit.local[axisU] - (static_cast<float>(columnIndex) + 0.5f) * pitch;
-  const float v = hit.local.z - static_cast<float>(level) * storey;
+  const int columnIndex = std::clamp(static_cast<int>(local[axisU] / pitch), 0, columns - 1);
+  const int level = static_cast<int>(local.z / storey);
+  const float u = local[axisU] - (static_cast<float>(columnIndex) + 0.5f) * pitch;
+  const float v = local.z - static_cast<float>(level) * storey;
   if (level < std::max(1, static_cast<int>(size.z / storey + 0.01f))) {
-    const Opening opening = openingOf(style, seed, columnIndex, columns, level, pitch, storey);
+    const Opening opening = openingOf(style, {columnIndex, columns, level, pitch, storey}, seed);
     const std::uint32_t paneSeed = seed + static_cast<std::uint32_t>(level * 131 + columnIndex * 7 + sideBit * 1009);
-    if (opening.holds(u, v)) return enterOpening(material, opening, style.depth, u, v, axisU, paneSeed, direction, hit);
+    if (opening.holds(u, v))
+      return enterOpening(material, opening, style.depth, {u, v, axisU, direction, normal}, paneSeed);
     const bool trim = style.groundFloor && opening.kind == Opening::Kind::window && v > opening.bottom - 0.12f &&
                       v < opening.top + 0.16f && std::abs(u) < opening.right + 0.11f;
-    if (trim && !(style.arched && v > opening.top)) return {{0.80f, 0.77f, 0.71f}, 0.65f, 0.0f, 6};
-    if (style.groundFloor && level > 0 && v < 0.16f) return {{0.76f, 0.73f, 0.67f}, 0.65f, 0.0f, 6};  // string course
-    if (opening.kind == Opening::Kind::shop && v > 2.7f) {                                            // the shop's sign
+    if (trim && !(style.arched && v > opening.top)) return onWall({{0.80f, 0.77f, 0.71f}, 0.65f, 0.0f, 6});
+    if (style.groundFloor && level > 0 && v < 0.16f)
+      return onWall({{0.76f, 0.73f, 0.67f}, 0.65f, 0.0f, 6});  // string course
+    if (opening.kind == Opening::Kind::shop && v > 2.7f) {     // the shop's sign
       const glm::vec3 sign(0.2f + 0.6f * cellHash(8, 0, seed), 0.2f + 0.4f * cellHash(9, 0, seed),
                            0.2f + 0.5f * cellHash(10, 0, seed));
       const bool letter =
           v > 2.8f && v < 3.0f && std::abs(u) < pitch * 0.35f &&
           cellHash(static_cast<int>(std::floor(u * 9.0f)), static_cast<int>(v * 14.0f), seed + 5) > 0.45f;
-      return {letter ? glm::vec3(0.93f, 0.92f, 0.86f) : sign, 0.45f, 0.0f, 6};
+      return onWall({letter ? glm::vec3(0.93f, 0.92f, 0.86f) : sign, 0.45f, 0.0f, 6});
     }
   }
-  return plainSurface(material, seed, position, hit.local, size, hit.normal);
+  return onWall(plainSurface(point));
 }
 
 }  // namespace strata::synthetic

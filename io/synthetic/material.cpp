@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/synthetic/city.h"
+#include "io/synthetic/asprs.h"
 #include "io/synthetic/random.h"
 #include "io/synthetic/shape.h"
+#include "io/synthetic/street_grid.h"
 
 namespace strata::synthetic {
 namespace {
@@ -200,8 +201,13 @@ Surface simpleSurface(Material material, std::uint32_t seed, const glm::vec2& p)
 
 }  // namespace
 
-Surface plainSurface(Material material, std::uint32_t seed, const glm::vec3& position, const glm::vec3& local,
-                     const glm::vec3& size, const glm::vec3& normal) {
+bool hasWindows(Material material) {
+  return material == Material::brick || material == Material::plaster || material == Material::stone ||
+         material == Material::curtain || material == Material::church || material == Material::officeWall;
+}
+
+Surface plainSurface(const SurfacePoint& point) {
+  const auto& [material, seed, position, local, size, normal] = point;
   const glm::vec2 p = planar(position, normal);
   if (hasWindows(material) && normal.z > 0.5f) return simpleSurface(Material::flatRoof, seed, p);
   switch (material) {

@@ -2,32 +2,27 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/random.h"
+
 namespace strata::synthetic {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection that spreads every input bit.
-inline std::uint64_t mix64(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
-/// Random numbers that depend on (key, index) alone, so that any point can be made without those before it.
+/// Random numbers that depend on (key, index) alone, so that any point can be made without the ones before it.
 class CounterRandom {
  public:
-  CounterRandom(std::uint64_t key, std::uint64_t index) : state_(mix64(key + mix64((index + 1) * kStep))) {}
+  CounterRandom(std::uint64_t key, std::uint64_t index) : state_(mix64(key + mix64((index + 1) * kSplitMixStep))) {}
 
   std::uint64_t bits() {
-    state_ += kStep;
+    state_ += kSplitMixStep;
     return mix64(state_);
   }
-  /// [0, 1)
-  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
-  /// [0, 1)
+  /// In [0, 1).
+  double uniform() { return unitInterval(bits()); }
+  /// In [0, 1).
   float uniformFloat() { return static_cast<float>(bits() >> 40) * 0x1p-24f; }
   float between(float low, float high) { return low + (high - low) * uniformFloat(); }
   int below(int count) { return static_cast<int>((bits() >> 33) % static_cast<std::uint64_t>(count)); }
   bool chance(float probability) { return uniformFloat() < probability; }
-  /// Bell-shaped with mean 0 and variance 1, never beyond 3.5: four uniform numbers added.
+  /// The sum of four uniform numbers: bell-shaped with mean 0 and variance 1, and never beyond 3.5.
   float bell() {
     const std::uint64_t b = bits();
     const std::uint64_t sum = (b & 0xffff) + (b >> 16 & 0xffff) + (b >> 32 & 0xffff) + (b >> 48);
@@ -35,11 +30,10 @@ class CounterRandom {
   }
 
  private:
-  static constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15ULL;
   std::uint64_t state_;
 };
 
-/// [0, 1) for one cell of a texture.
+/// A number in [0, 1) for one cell of a texture.
 inline float cellHash(int x, int y, std::uint32_t seed) {
   std::uint32_t h =
       static_cast<std::uint32_t>(x) * 0x85ebca6bU ^ static_cast<std::uint32_t>(y) * 0xc2b2ae35U ^ seed * 0x27d4eb2fU;
@@ -48,7 +42,7 @@ inline float cellHash(int x, int y, std::uint32_t seed) {
   return static_cast<float>((h ^ (h >> 15)) >> 8) * 0x1p-24f;
 }
 
-/// Smooth noise in [0, 1) with features of unit size and its slope.
+/// Smooth noise in [0, 1) with features of unit size, and its slope.
 struct NoiseValue {
   float value, dx, dy;
 };

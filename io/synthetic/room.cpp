@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/synthetic/city.h"
 #include "io/synthetic/scanner.h"
 #include "io/synthetic/scene_builder.h"
+#include "io/synthetic/scenes.h"
 
 namespace strata::synthetic {
 namespace {
@@ -18,8 +18,8 @@ constexpr float kNorthLow = kCorridorHigh + kWall, kNorthHigh = kNorthLow + kRoo
 constexpr float kCellM = 0.8f;
 constexpr float kTripodM = 1.6f;
 
-/// A place in a room whose window is at local y = 0 and whose door is at y = kRoomDepth; north rooms are mirrored.
-struct RoomFrame {
+/// A room in coordinates of its own: its window is at y = 0 and its door at y = kRoomDepth. North rooms are mirrored.
+struct RoomPlan {
   float west;
   bool north;
 
@@ -27,7 +27,7 @@ struct RoomFrame {
   glm::vec3 at(float x, float localY, float z) const { return {west + x, y(localY), z}; }
 };
 
-void addDesk(SceneBuilder& b, const RoomFrame& room, float x, float y) {
+void addDesk(SceneBuilder& b, const RoomPlan& room, float x, float y) {
   b.block(room.at(x, y, 0.72f), {1.6f, 0.8f, 0.03f}, Material::wood, 11);
   for (const float end : {-0.75f, 0.75f}) b.block(room.at(x + end, y, 0.0f), {0.04f, 0.7f, 0.72f}, Material::metal);
   b.block(room.at(x + 0.5f, y, 0.1f), {0.42f, 0.6f, 0.55f}, Material::metal, 3);
@@ -36,7 +36,7 @@ void addDesk(SceneBuilder& b, const RoomFrame& room, float x, float y) {
   b.block(room.at(x, y - 0.2f, 0.88f), {0.60f, 0.04f, 0.36f}, Material::screen, b.newSeed());
   b.block(room.at(x, y + 0.16f, 0.75f), {0.44f, 0.15f, 0.02f}, Material::rubber);
   b.block(room.at(x + 0.34f, y + 0.16f, 0.75f), {0.07f, 0.11f, 0.03f}, Material::rubber);
-  b.cone(room.at(x - 0.55f, y + 0.1f, 0.75f), 0.04f, 0.1f, 1.0f, Material::paint, b.newSeed());
+  b.cone(room.at(x - 0.55f, y + 0.1f, 0.75f), {0.04f, 0.1f, 1.0f}, Material::paint, b.newSeed());
   for (int i = 0; i < 3; ++i) {
     b.block(room.at(x - 0.5f + b.random.between(-0.08f, 0.08f), y - 0.15f, 0.75f + 0.03f * static_cast<float>(i)),
             {0.22f, 0.30f, 0.03f}, Material::books, b.newSeed());
@@ -44,18 +44,22 @@ void addDesk(SceneBuilder& b, const RoomFrame& room, float x, float y) {
 }
 
 /// `facing` is the direction, along the room's y, that the back stands on.
-void addChair(SceneBuilder& b, const RoomFrame& room, float x, float y, float facing) {
+void addChair(SceneBuilder& b, const RoomPlan& room, float x, float y, float facing) {
   const std::uint32_t seed = b.newSeed();
   b.block(room.at(x, y, 0.44f), {0.48f, 0.48f, 0.07f}, Material::fabric, seed);
   b.block(room.at(x, y + facing * 0.24f, 0.56f), {0.44f, 0.05f, 0.5f}, Material::fabric, seed);
   b.block(room.at(x, y + facing * 0.24f, 0.45f), {0.06f, 0.03f, 0.2f}, Material::metal);
-  b.cone(room.at(x, y, 0.06f), 0.03f, 0.38f, 1.0f, Material::metal);
+  b.cone(room.at(x, y, 0.06f), {0.03f, 0.38f, 1.0f}, Material::metal);
   b.block(room.at(x, y, 0.04f), {0.56f, 0.06f, 0.04f}, Material::rubber);
   b.block(room.at(x, y, 0.04f), {0.06f, 0.56f, 0.04f}, Material::rubber);
 }
 
 /// Bookcase with its back to the wall at x (facing east or west by `sign`), from y to y + width.
-void addBookcase(SceneBuilder& b, const RoomFrame& room, float x, float y, float width, float sign) {
+struct Bookcase {
+  float x, y, width, sign;
+};
+void addBookcase(SceneBuilder& b, const RoomPlan& room, const Bookcase& bookcase) {
+  const auto& [x, y, width, sign] = bookcase;
   constexpr float kDepth = 0.32f, kCaseHeight = 2.2f, kShelf = 0.36f;
   const float front = x + sign * kDepth;
   const float low = room.west + std::min(x, front), high = room.west + std::max(x, front);
@@ -81,10 +85,10 @@ void addBookcase(SceneBuilder& b, const RoomFrame& room, float x, float y, float
   }
 }
 
-void addPlant(SceneBuilder& b, const RoomFrame& room, float x, float y) {
+void addPlant(SceneBuilder& b, const RoomPlan& room, float x, float y) {
   const std::uint32_t seed = b.newSeed();
-  b.cone(room.at(x, y, 0.0f), 0.18f, 0.36f, 1.0f, Material::brick, seed);
-  b.cone(room.at(x, y, 0.36f), 0.025f, 0.5f, 0.6f, Material::bark, seed);
+  b.cone(room.at(x, y, 0.0f), {0.18f, 0.36f, 1.0f}, Material::brick, seed);
+  b.cone(room.at(x, y, 0.36f), {0.025f, 0.5f, 0.6f}, Material::bark, seed);
   for (int i = 0; i < 3; ++i) {
     const float shift = 0.16f * static_cast<float>(i - 1);
     b.foliage(room.at(x + shift, y + b.random.between(-0.12f, 0.12f), 0.95f + 0.16f * static_cast<float>(i % 2)),
@@ -92,20 +96,23 @@ void addPlant(SceneBuilder& b, const RoomFrame& room, float x, float y) {
   }
 }
 
-void addBin(SceneBuilder& b, const RoomFrame& room, float x, float y) {
-  b.cone(room.at(x, y, 0.0f), 0.14f, 0.32f, 1.0f, Material::metal, 9);
+void addBin(SceneBuilder& b, const RoomPlan& room, float x, float y) {
+  b.cone(room.at(x, y, 0.0f), {0.14f, 0.32f, 1.0f}, Material::metal, 9);
 }
 
 /// Something flat on the western (sign 1) or eastern (sign -1) wall.
-void addOnWall(SceneBuilder& b, const RoomFrame& room, float sign, float y, float z, float width, float height,
-               Material material) {
+struct WallPanel {
+  float sign, y, z, width, height;
+};
+void addOnWall(SceneBuilder& b, const RoomPlan& room, const WallPanel& panel, Material material) {
+  const auto& [sign, y, z, width, height] = panel;
   const float wall = room.west + (sign > 0.0f ? kWall * 0.5f : kRoomWidth - kWall * 0.5f);
   const float middle = room.y(y);
   b.box({std::min(wall, wall + sign * 0.03f), middle - width * 0.5f, z},
         {std::max(wall, wall + sign * 0.03f), middle + width * 0.5f, z + height}, material, b.newSeed());
 }
 
-void furnishOffice(SceneBuilder& b, const RoomFrame& room) {
+void furnishOffice(SceneBuilder& b, const RoomPlan& room) {
   for (const float x : {1.25f, 3.55f}) {
     for (const float y : {1.5f, 3.4f}) {
       addDesk(b, room, x, y);
@@ -113,27 +120,27 @@ void furnishOffice(SceneBuilder& b, const RoomFrame& room) {
     }
     addBin(b, room, x + 1.0f, 1.4f);
   }
-  addBookcase(b, room, kRoomWidth - kWall * 0.5f, 4.2f, 1.5f, -1.0f);
+  addBookcase(b, room, {kRoomWidth - kWall * 0.5f, 4.2f, 1.5f, -1.0f});
   addPlant(b, room, 0.5f, 0.45f);
-  addOnWall(b, room, 1.0f, 3.2f, 1.3f, 0.9f, 0.6f, Material::picture);
+  addOnWall(b, room, {1.0f, 3.2f, 1.3f, 0.9f, 0.6f}, Material::picture);
 }
 
-void furnishMeeting(SceneBuilder& b, const RoomFrame& room) {
+void furnishMeeting(SceneBuilder& b, const RoomPlan& room) {
   b.block(room.at(2.4f, 2.8f, 0.70f), {1.4f, 3.4f, 0.05f}, Material::wood, 21);
-  for (const float y : {1.6f, 4.0f}) b.cone(room.at(2.4f, y, 0.0f), 0.28f, 0.70f, 0.35f, Material::metal);
+  for (const float y : {1.6f, 4.0f}) b.cone(room.at(2.4f, y, 0.0f), {0.28f, 0.70f, 0.35f}, Material::metal);
   for (int i = 0; i < 4; ++i) {
     const float y = 1.5f + 0.85f * static_cast<float>(i);
     for (const float sign : {-1.0f, 1.0f}) addChair(b, room, 2.4f + sign * 1.05f, y, i % 2 == 0 ? 1.0f : -1.0f);
     b.block(room.at(2.4f + b.random.between(-0.4f, 0.4f), y, 0.75f), {0.21f, 0.30f, 0.01f}, Material::whiteboard,
             b.newSeed());
   }
-  b.cone(room.at(2.4f, 2.8f, 0.75f), 0.08f, 0.22f, 0.7f, Material::glass);
-  addOnWall(b, room, 1.0f, 2.8f, 0.9f, 2.4f, 1.3f, Material::whiteboard);
-  addOnWall(b, room, -1.0f, 2.8f, 1.1f, 1.8f, 1.0f, Material::screen);
+  b.cone(room.at(2.4f, 2.8f, 0.75f), {0.08f, 0.22f, 0.7f}, Material::glass);
+  addOnWall(b, room, {1.0f, 2.8f, 0.9f, 2.4f, 1.3f}, Material::whiteboard);
+  addOnWall(b, room, {-1.0f, 2.8f, 1.1f, 1.8f, 1.0f}, Material::screen);
   addPlant(b, room, 4.3f, 0.5f);
 }
 
-void furnishLounge(SceneBuilder& b, const RoomFrame& room) {
+void furnishLounge(SceneBuilder& b, const RoomPlan& room) {
   const auto sofa = [&](float x, float y, float sign) {
     const std::uint32_t seed = b.newSeed();
     b.block(room.at(x, y, 0.08f), {0.85f, 2.0f, 0.34f}, Material::fabric, seed);
@@ -147,8 +154,8 @@ void furnishLounge(SceneBuilder& b, const RoomFrame& room) {
   b.block(room.at(1.9f, 2.2f, 0.38f), {0.7f, 1.2f, 0.04f}, Material::wood, 31);
   for (const float y : {1.75f, 2.65f}) b.block(room.at(1.9f, y, 0.0f), {0.5f, 0.05f, 0.38f}, Material::wood, 31);
   b.block(room.at(1.85f, 2.1f, 0.42f), {0.3f, 0.22f, 0.02f}, Material::books, b.newSeed());
-  b.cone(room.at(4.2f, 0.5f, 0.0f), 0.02f, 1.5f, 1.0f, Material::metal);  // floor lamp
-  b.cone(room.at(4.2f, 0.5f, 1.4f), 0.22f, 0.3f, 0.6f, Material::lamp);
+  b.cone(room.at(4.2f, 0.5f, 0.0f), {0.02f, 1.5f, 1.0f}, Material::metal);  // floor lamp
+  b.cone(room.at(4.2f, 0.5f, 1.4f), {0.22f, 0.3f, 0.6f}, Material::lamp);
   // Kitchenette along the eastern wall.
   b.box({room.west + 4.15f, std::min(room.y(3.6f), room.y(5.9f)), 0.0f},
         {room.west + 4.7f, std::max(room.y(3.6f), room.y(5.9f)), 0.9f}, Material::paint, 6);
@@ -157,23 +164,23 @@ void furnishLounge(SceneBuilder& b, const RoomFrame& room) {
   b.box({room.west + 4.35f, std::min(room.y(3.6f), room.y(5.9f)), 1.5f},
         {room.west + 4.7f, std::max(room.y(3.6f), room.y(5.9f)), 2.2f}, Material::paint, 6);
   b.block(room.at(4.45f, 4.2f, 0.94f), {0.3f, 0.4f, 0.35f}, Material::metal);
-  addOnWall(b, room, 1.0f, 4.2f, 1.2f, 1.1f, 0.8f, Material::picture);
+  addOnWall(b, room, {1.0f, 4.2f, 1.2f, 1.1f, 0.8f}, Material::picture);
   addPlant(b, room, 0.5f, 0.5f);
 }
 
-void furnishLibrary(SceneBuilder& b, const RoomFrame& room) {
-  addBookcase(b, room, kWall * 0.5f, 0.5f, 3.4f, 1.0f);
-  addBookcase(b, room, kRoomWidth - kWall * 0.5f, 0.5f, 5.0f, -1.0f);
-  addBookcase(b, room, 2.0f, 0.8f, 2.2f, 1.0f);
+void furnishLibrary(SceneBuilder& b, const RoomPlan& room) {
+  addBookcase(b, room, {kWall * 0.5f, 0.5f, 3.4f, 1.0f});
+  addBookcase(b, room, {kRoomWidth - kWall * 0.5f, 0.5f, 5.0f, -1.0f});
+  addBookcase(b, room, {2.0f, 0.8f, 2.2f, 1.0f});
   b.block(room.at(2.6f, 4.4f, 0.70f), {1.2f, 1.2f, 0.04f}, Material::wood, 41);
-  b.cone(room.at(2.6f, 4.4f, 0.0f), 0.3f, 0.70f, 0.3f, Material::wood, 41);
+  b.cone(room.at(2.6f, 4.4f, 0.0f), {0.3f, 0.70f, 0.3f}, Material::wood, 41);
   for (const float y : {3.6f, 5.2f}) addChair(b, room, 2.6f, y, y < 4.0f ? -1.0f : 1.0f);
   b.block(room.at(2.7f, 4.3f, 0.74f), {0.3f, 0.22f, 0.04f}, Material::books, b.newSeed());
   addPlant(b, room, 1.4f, 0.5f);
 }
 
 /// Wall with a door opening between a room and the corridor, and the open door.
-void addDoorWall(SceneBuilder& b, const RoomFrame& room, std::uint32_t seed) {
+void addDoorWall(SceneBuilder& b, const RoomPlan& room, std::uint32_t seed) {
   const float low = room.north ? kCorridorHigh : kRoomDepth, high = low + kWall;
   const float east = room.west + kRoomWidth;
   b.box({room.west, low, 0.0f}, {room.west + kDoorFrom, high, kHeight}, Material::wall, seed);
@@ -188,7 +195,7 @@ void addDoorWall(SceneBuilder& b, const RoomFrame& room, std::uint32_t seed) {
   b.ball({hinge + 0.09f, room.y(kRoomDepth - 0.85f), 1.02f}, {0.04f, 0.04f, 0.04f}, Material::metal);
 }
 
-void addRoomShell(SceneBuilder& b, const RoomFrame& room) {
+void addRoomShell(SceneBuilder& b, const RoomPlan& room) {
   const std::uint32_t seed = b.newSeed();
   addDoorWall(b, room, seed);
   const float low = std::min(room.y(0.0f), room.y(kRoomDepth)), high = low + kRoomDepth;
@@ -248,7 +255,7 @@ std::vector<Station> stationsFor(const Scene& scene, int columns) {
   };
   for (int i = 0; i < columns; ++i) {
     for (const bool north : {false, true}) {  // one near the door, one near the window
-      const RoomFrame room{static_cast<float>(i) * kRoomWidth, north};
+      const RoomPlan room{static_cast<float>(i) * kRoomWidth, north};
       add(room.at(2.6f, 4.9f, kTripodM));
       add(room.at(2.3f, 1.0f, kTripodM));
     }
@@ -267,7 +274,7 @@ std::unique_ptr<ScannerScan> makeRoom(std::uint64_t points, std::uint64_t seed) 
   addShell(b, length, columns);
   addCorridor(b, length, columns);
   for (int i = 0; i < 2 * columns; ++i) {
-    const RoomFrame room{static_cast<float>(i / 2) * kRoomWidth, i % 2 == 1};
+    const RoomPlan room{static_cast<float>(i / 2) * kRoomWidth, i % 2 == 1};
     addRoomShell(b, room);
     switch ((i + b.random.below(2)) % 5) {
       case 0:
@@ -285,19 +292,20 @@ std::unique_ptr<ScannerScan> makeRoom(std::uint64_t points, std::uint64_t seed) 
     }
   }
   Scene scene(std::move(b.primitives), glm::vec2(-kOuterWall), {length + kOuterWall, kNorthHigh + kOuterWall}, kCellM);
-  ShapeExtent frame;
+  ShapeExtent extent;
   constexpr double kMargin = 0.02;  // more than the noise of the range
-  frame.min = {-static_cast<double>(kOuterWall), -static_cast<double>(kOuterWall), -kMargin};
-  frame.max = {static_cast<double>(length + kOuterWall), static_cast<double>(kNorthHigh + kOuterWall),
-               static_cast<double>(kHeight) + kMargin};
+  extent.min = {-static_cast<double>(kOuterWall), -static_cast<double>(kOuterWall), -kMargin};
+  extent.max = {static_cast<double>(length + kOuterWall), static_cast<double>(kNorthHigh + kOuterWall),
+                static_cast<double>(kHeight) + kMargin};
   Lighting lighting;
   lighting.indoor = true;
   lighting.lampPitch = kRoomWidth * 0.5f;
   lighting.lampHeight = kHeight - 0.05f;
   lighting.lampRows = {2.0f, 4.5f, (kCorridorLow + kCorridorHigh) * 0.5f, kNorthHigh - 4.5f, kNorthHigh - 2.0f};
   std::vector<Station> stations = stationsFor(scene, columns);
-  return std::make_unique<ScannerScan>(std::move(scene), Material::parquet, std::move(lighting), std::move(stations),
-                                       frame, points, seed);
+  return std::make_unique<ScannerScan>(
+      ScannedScene{std::move(scene), Material::parquet, std::move(lighting), std::move(stations), extent}, points,
+      seed);
 }
 
 }  // namespace strata::synthetic

@@ -30,13 +30,12 @@ AzimuthRange azimuthsOf(const glm::vec2& low, const glm::vec2& high) {
 
 }  // namespace
 
-ScannerScan::ScannerScan(Scene scene, Material ground, Lighting lighting, std::vector<Station> stations,
-                         const ShapeExtent& frame, std::uint64_t points, std::uint64_t seed)
-    : scene_(std::move(scene)),
-      ground_(ground),
-      lighting_(std::move(lighting)),
-      stations_(std::move(stations)),
-      frame_(frame),
+ScannerScan::ScannerScan(ScannedScene scanned, std::uint64_t points, std::uint64_t seed)
+    : scene_(std::move(scanned.scene)),
+      ground_(scanned.ground),
+      lighting_(std::move(scanned.lighting)),
+      stations_(std::move(scanned.stations)),
+      extent_(scanned.extent),
       key_(mix64(seed ^ 0x5ca11e5)) {
   double total = 0.0;
   for (const Station& station : stations_) {
@@ -150,16 +149,14 @@ void ScannerScan::measure(std::size_t station, double sweep, std::uint64_t point
 Surface ScannerScan::surfaceOf(const Ray& ray, Hit& hit, glm::vec3& normal) const {
   const glm::vec3 at = ray.origin + ray.direction * hit.t;
   normal = hit.normal;
-  if (hit.primitive == Hit::kGround) return plainSurface(ground_, 0, at, at, glm::vec3(1.0f), normal);
+  if (hit.primitive == Hit::kGround) return plainSurface({ground_, 0, at, at, glm::vec3(1.0f), normal});
   const Primitive& p = scene_.primitives()[static_cast<std::size_t>(hit.primitive)];
-  const glm::vec3 size = p.max - p.min;
-  if (p.kind != PrimitiveKind::box || !hasWindows(p.material))
-    return plainSurface(p.material, p.seed, at, at - p.min, size, normal);
-  WallHit wall{at - p.min, normal};
-  const Surface surface = facadeSurface(p.material, p.seed, p.windowSides, at, size, ray.direction, wall);
-  hit.t += wall.deeper;
-  normal = wall.normal;
-  return surface;
+  const SurfacePoint point{p.material, p.seed, at, at - p.min, p.max - p.min, normal};
+  if (p.kind != PrimitiveKind::box || !hasWindows(p.material)) return plainSurface(point);
+  const FacadeHit facade = hitFacade(point, p.windowSides, ray.direction);
+  hit.t += facade.deeper;
+  normal = facade.normal;
+  return facade.surface;
 }
 
 glm::vec3 ScannerScan::light(const glm::vec3& position, const glm::vec3& normal, std::uint64_t raySeed) const {

@@ -8,9 +8,9 @@
 
 namespace strata::synthetic {
 
-/// One position of a scanner. Rays are uniform in azimuth; those of a tripod also in elevation, as a turning mirror
-/// sends them, so that level ground gets N h / (2 pi (e1 - e0) r (r^2 + h^2)) points per square metre at the distance
-/// r; those from the air are uniform in solid angle.
+/// One place that a scanner stood at. Its rays are uniform in azimuth. Those of a tripod are uniform in elevation too,
+/// as a turning mirror sends them, so that N rays from the height h put N h / (2 pi (e1 - e0) r (r^2 + h^2)) points on
+/// each square metre of level ground at the distance r. Those from the air are uniform in solid angle.
 struct Station {
   glm::vec3 position{0.0f};
   float lowest = -1.05f, highest = 1.3f;  ///< elevation, radians
@@ -19,7 +19,7 @@ struct Station {
   float weight = 1.0f;  ///< relative number of points per radian of azimuth and elevation
 };
 
-/// Light that the camera saw while the scanner ran.
+/// The light in which the camera saw the scene.
 struct Lighting {
   bool indoor = false;
   glm::vec3 sun{-0.52f, -0.42f, 0.74f};  ///< unit, towards the sun (outdoors)
@@ -28,17 +28,24 @@ struct Lighting {
   float lampHeight = 2.8f;
 };
 
-/// A scene as laser scanners see it: first surfaces only, noise of some millimetres along the ray. Point i belongs to
-/// the station whose range of the scan holds i, and a station's points run round its azimuth, as a real scanner's do.
+/// A scene, and the stations that it is scanned from.
+struct ScannedScene {
+  Scene scene;
+  Material ground;  ///< at z = 0
+  Lighting lighting;
+  std::vector<Station> stations;  ///< every one of them has a surface below it
+  ShapeExtent extent;
+};
+
+/// A scene as laser scanners see it: first surfaces alone, with noise of some millimetres along the ray. The points of
+/// one station follow each other, and run round its azimuth as those of a real scanner do.
 class ScannerScan final : public Shape {
  public:
   static constexpr float kNoiseM = 0.002f;  ///< standard deviation of the range
 
-  /// `ground` is the material at z = 0. Stations must have something below them.
-  ScannerScan(Scene scene, Material ground, Lighting lighting, std::vector<Station> stations, const ShapeExtent& frame,
-              std::uint64_t points, std::uint64_t seed);
+  ScannerScan(ScannedScene scanned, std::uint64_t points, std::uint64_t seed);
 
-  const ShapeExtent& frame() const override { return frame_; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override;
 
   const Scene& scene() const { return scene_; }
@@ -46,8 +53,8 @@ class ScannerScan final : public Shape {
   std::size_t stationOf(std::uint64_t point) const;
 
  private:
-  /// Azimuths in equal bins, each with the elevation above which there is only sky: rays are drawn below it, so that
-  /// few are drawn in vain.
+  /// The elevation above which there is only sky, for equal bins of azimuth. Rays are drawn below it, so that few are
+  /// drawn in vain.
   struct Horizon {
     static constexpr int kBins = 1024;
     std::vector<float> highest;     ///< elevation (or its sine), kBins
@@ -56,7 +63,7 @@ class ScannerScan final : public Shape {
     float area = 0.0f;
   };
   Horizon horizonOf(const Station& station) const;
-  /// Direction for the place `u` in [0, 1) of the station's sweep.
+  /// The direction at `u` in [0, 1) of the station's sweep; `v` in [0, 1) picks the elevation.
   glm::vec3 direction(const Station& station, const Horizon& horizon, float u, float v) const;
   void measure(std::size_t station, double sweep, std::uint64_t point, ShapePoint& out) const;
   Surface surfaceOf(const Ray& ray, Hit& hit, glm::vec3& normal) const;
@@ -66,10 +73,10 @@ class ScannerScan final : public Shape {
   Material ground_;
   Lighting lighting_;
   std::vector<Station> stations_;
-  ShapeExtent frame_;
+  ShapeExtent extent_;
   std::uint64_t key_;
   std::vector<Horizon> horizons_;
-  std::vector<std::uint64_t> firstPoint_;  ///< of each station, and the total
+  std::vector<std::uint64_t> firstPoint_;  ///< of each station, then the number of points
 };
 
 }  // namespace strata::synthetic

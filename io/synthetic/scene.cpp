@@ -8,13 +8,13 @@
 namespace strata::synthetic {
 namespace {
 
-/// Where the ray is inside the box: [near, far], and the axis through whose side it comes in.
-struct Span {
+/// The way of a ray inside a box, from `near` to `far`, and the axis through whose side it enters.
+struct RayInterval {
   float near, far;
   int axis;
 };
 
-Span spanInBox(const Primitive& p, const Ray& ray) {
+RayInterval intervalInBox(const Primitive& p, const Ray& ray) {
   const glm::vec3 a = (p.min - ray.origin) * ray.inverse;
   const glm::vec3 b = (p.max - ray.origin) * ray.inverse;
   const glm::vec3 low = glm::min(a, b), high = glm::max(a, b);
@@ -35,10 +35,10 @@ bool accept(float t, const glm::vec3& normal, int index, Hit& hit) {
   return true;
 }
 
-/// Convex clipping: the box's span cut by the sloping planes.
-bool intersectRoof(const Primitive& p, int index, const Ray& ray, const Span& span, Hit& hit) {
-  float near = span.near, far = span.far;
-  glm::vec3 normal = sideNormal(ray, span.axis);
+/// Cuts the ray's way through the box at the sloping planes, which is enough because a roof is convex.
+bool intersectRoof(const Primitive& p, int index, const Ray& ray, const RayInterval& inside, Hit& hit) {
+  float near = inside.near, far = inside.far;
+  glm::vec3 normal = sideNormal(ray, inside.axis);
   for (int axis = 0; axis < 2; ++axis) {
     const float slope = p.slope[axis];
     if (slope <= 0.0f) continue;
@@ -64,14 +64,14 @@ bool intersectRoof(const Primitive& p, int index, const Ray& ray, const Span& sp
   return near <= far && accept(near, glm::normalize(normal), index, hit);
 }
 
-bool intersectCone(const Primitive& p, int index, const Ray& ray, const Span& span, Hit& hit) {
+bool intersectCone(const Primitive& p, int index, const Ray& ray, const RayInterval& inside, Hit& hit) {
   const glm::vec3 middle = (p.min + p.max) * 0.5f;
   const float radius = (p.max.x - p.min.x) * 0.5f;
   const float shrink = radius * (1.0f - p.taper) / (p.max.z - p.min.z);  // radius lost per metre of height
-  if (span.axis == 2) {  // through the lid or the base, if within its circle
-    const glm::vec3 at = ray.origin + ray.direction * span.near - middle;
+  if (inside.axis == 2) {  // through the lid or the base, if within its circle
+    const glm::vec3 at = ray.origin + ray.direction * inside.near - middle;
     const float r = ray.direction.z > 0.0f ? radius : radius * p.taper;
-    if (at.x * at.x + at.y * at.y <= r * r) return accept(span.near, sideNormal(ray, 2), index, hit);
+    if (at.x * at.x + at.y * at.y <= r * r) return accept(inside.near, sideNormal(ray, 2), index, hit);
   }
   const glm::vec2 o(ray.origin.x - middle.x, ray.origin.y - middle.y);
   const glm::vec2 d(ray.direction.x, ray.direction.y);
@@ -91,22 +91,28 @@ bool intersectCone(const Primitive& p, int index, const Ray& ray, const Span& sp
   return false;
 }
 
-/// A way through leaves: exponential steps, each ending at a leaf where a twig is; twigs are fewer towards the outside,
-/// which frays the crown's outline. `o` and `d` are the ray in the unit ball's frame. Beyond `far`: nothing was hit.
-float leafAlong(const Primitive& p, int index, const Ray& ray, const glm::vec3& o, const glm::vec3& d, float t,
-                float far) {
+/// A ray seen from a ball of radius 1, which it is inside of from `near` to `far`.
+struct BallRay {
+  glm::vec3 origin, direction;
+  float near, far;
+};
+
+/// Lets a ray go into leaves in exponential steps until one of them ends at a twig. Twigs are fewer towards the
+/// outside, which frays the outline of the crown. Returns how far the ray came, more than `far` when it met nothing.
+float leafAlong(const Primitive& p, int index, const Ray& ray, const BallRay& inBall) {
   constexpr int kSteps = 5;
   constexpr float kTwigsPerMetre = 3.2f;
   CounterRandom random(ray.seed, static_cast<std::uint64_t>(index));
+  float t = inBall.near;
   for (int step = 0; step < kSteps; ++step) {
     t -= p.meanFreePath * std::log(1.0f - random.uniformFloat());
-    if (t > far) break;
-    const glm::vec3 in = o + d * t;
+    if (t > inBall.far) break;
+    const glm::vec3 in = inBall.origin + inBall.direction * t;
     const glm::ivec3 twig(glm::floor((ray.origin + ray.direction * t) * kTwigsPerMetre));
     const float fromMiddle = glm::dot(in, in);
     if (cellHash(twig.x + twig.z * 977, twig.y, p.seed) > fromMiddle * fromMiddle * 0.85f) return t;
   }
-  return far + 1.0f;
+  return inBall.far + 1.0f;
 }
 
 bool intersectEllipsoid(const Primitive& p, int index, const Ray& ray, Hit& hit) {
@@ -120,13 +126,13 @@ bool intersectEllipsoid(const Primitive& p, int index, const Ray& ray, Hit& hit)
   float t = (-b - root) / a;
   if (p.kind == PrimitiveKind::foliage) {
     const float far = (-b + root) / a;
-    t = leafAlong(p, index, ray, o, d, std::max(t, 0.0f), far);
+    t = leafAlong(p, index, ray, {o, d, std::max(t, 0.0f), far});
     if (t > far) return false;
   }
   return accept(t, glm::normalize((o + d * t) * scale), index, hit);
 }
 
-/// The range of columns that [low, high] touches.
+/// The column of the grid that holds a position.
 glm::ivec2 column(const glm::vec2& position, const glm::vec2& origin, float cellSize, const glm::ivec2& cells) {
   const glm::ivec2 cell(glm::floor((position - origin) / cellSize));
   return glm::clamp(cell, glm::ivec2(0), cells - 1);
@@ -143,15 +149,15 @@ Ray::Ray(const glm::vec3& rayOrigin, const glm::vec3& rayDirection, std::uint64_
 }
 
 bool intersect(const Primitive& primitive, int index, const Ray& ray, Hit& hit) {
-  const Span span = spanInBox(primitive, ray);
-  if (span.near > span.far || span.far < 0.0f || span.near >= hit.t) return false;
+  const RayInterval inside = intervalInBox(primitive, ray);
+  if (inside.near > inside.far || inside.far < 0.0f || inside.near >= hit.t) return false;
   switch (primitive.kind) {
     case PrimitiveKind::box:
-      return accept(span.near, sideNormal(ray, span.axis), index, hit);
+      return accept(inside.near, sideNormal(ray, inside.axis), index, hit);
     case PrimitiveKind::roof:
-      return intersectRoof(primitive, index, ray, span, hit);
+      return intersectRoof(primitive, index, ray, inside, hit);
     case PrimitiveKind::cone:
-      return intersectCone(primitive, index, ray, span, hit);
+      return intersectCone(primitive, index, ray, inside, hit);
     case PrimitiveKind::ellipsoid:
     case PrimitiveKind::foliage:
       return intersectEllipsoid(primitive, index, ray, hit);

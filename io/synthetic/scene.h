@@ -5,6 +5,7 @@
 
 #include <glm/glm.hpp>
 
+#include "io/synthetic/facade.h"
 #include "io/synthetic/material.h"
 
 namespace strata::synthetic {
@@ -17,25 +18,26 @@ enum class PrimitiveKind : std::uint8_t {
   foliage,  ///< ellipsoid that stops a ray after a random way: the leaves of a crown
 };
 
-/// One object, given by the box around it and what its kind adds. Scene coordinates, metres.
+/// One object: the box around it in scene coordinates, metres, and the parameters of its kind.
 struct Primitive {
   glm::vec3 min{0.0f}, max{0.0f};
   PrimitiveKind kind = PrimitiveKind::box;
   Material material = Material::plaster;
-  std::uint8_t windowSides = 0;  ///< of boxes, see side::
+  std::uint8_t windowSides = 0;  ///< of boxes, see namespace side
   std::uint32_t seed = 0;        ///< picks colour and texture
   glm::vec2 slope{0.0f};         ///< of roofs: rise per metre from the sides across x and across y; 0 = gable
   float taper = 1.0f;            ///< of cones
   float meanFreePath = 1.0f;     ///< of foliage, metres
 };
 
-/// `direction` is a unit vector without components of zero; `seed` decides where foliage stops the ray.
+/// A ray of unit direction. Components of 0 are replaced by tiny ones; `seed` decides where foliage stops the ray.
 struct Ray {
   Ray(const glm::vec3& rayOrigin, const glm::vec3& rayDirection, std::uint64_t raySeed);
   glm::vec3 origin, direction, inverse;
   std::uint64_t seed;
 };
 
+/// The nearest surface that a ray has met so far.
 struct Hit {
   static constexpr int kGround = -1;
 
@@ -44,11 +46,11 @@ struct Hit {
   glm::vec3 normal{0.0f, 0.0f, 1.0f};
 };
 
-/// Replaces `hit` where `ray` enters the primitive before hit.t; index is what hit.primitive becomes. A ray that starts
-/// inside a solid does not see it.
+/// Replaces `hit` when `ray` enters the primitive, which has this index, before hit.t. A ray that starts inside a solid
+/// does not see it.
 bool intersect(const Primitive& primitive, int index, const Ray& ray, Hit& hit);
 
-/// Objects over a level ground at z = 0, found through a uniform grid of columns. Immutable.
+/// Objects over a level ground at z = 0, which are found through a uniform grid of columns. It never changes.
 class Scene {
  public:
   Scene(std::vector<Primitive> primitives, const glm::vec2& groundMin, const glm::vec2& groundMax, float cellSize);
@@ -58,11 +60,11 @@ class Scene {
   glm::vec2 groundMax() const { return groundMax_; }
   /// Height of the highest object.
   float top() const { return top_; }
-  /// The first surface within `reach` metres; false where there is none.
+  /// Finds the first surface within `reach` metres; false when there is none.
   bool trace(const Ray& ray, float reach, Hit& hit) const;
-  /// Whether anything but the ground lies within `reach` metres.
+  /// True when an object, the ground not counted, lies within `reach` metres.
   bool blocked(const Ray& ray, float reach) const;
-  /// True where a ball does not touch the box of any primitive.
+  /// True when a ball does not touch the box of any primitive.
   bool isFree(const glm::vec3& centre, float radius) const;
 
  private:

@@ -19,8 +19,8 @@ glm::vec3 rainbow(float hue) {
 
 class PlaneShape final : public Shape {
  public:
-  explicit PlaneShape(std::uint64_t seed) : key_(mix64(seed ^ 0x91a2e)) { frame_.max = {kSide, kSide, 0.0}; }
-  const ShapeExtent& frame() const override { return frame_; }
+  explicit PlaneShape(std::uint64_t seed) : key_(mix64(seed ^ 0x91a2e)) { extent_.max = {kSide, kSide, 0.0}; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override {
     for (ShapePoint& point : out) {
       CounterRandom random(key_, first++);
@@ -35,7 +35,7 @@ class PlaneShape final : public Shape {
 
  private:
   static constexpr double kSide = 100.0;
-  ShapeExtent frame_;
+  ShapeExtent extent_;
   std::uint64_t key_;
 };
 
@@ -50,11 +50,11 @@ class StackShape final : public Shape {
     const std::uint64_t perLayer = (points + layers_ - 1) / layers_;
     side_ = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(perLayer))));
     halfBits_ = std::max(1, (static_cast<int>(std::bit_width(points - 1)) + 1) / 2);
-    frame_.max =
+    extent_.max =
         glm::dvec3(static_cast<double>(side_ - 1), static_cast<double>(layers_ - 1), static_cast<double>(side_ - 1)) *
         kSpacingM;
   }
-  const ShapeExtent& frame() const override { return frame_; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override {
     for (ShapePoint& point : out) {
       const std::uint64_t place = shuffled(first++), layer = place % layers_, cell = place / layers_;
@@ -88,7 +88,7 @@ class StackShape final : public Shape {
     return index;
   }
 
-  ShapeExtent frame_;
+  ShapeExtent extent_;
   std::uint64_t points_, layers_, side_ = 1, key_;
   int halfBits_ = 1;
 };
@@ -96,11 +96,11 @@ class StackShape final : public Shape {
 class SphereShape final : public Shape {
  public:
   explicit SphereShape(std::uint64_t seed) : key_(mix64(seed ^ 0x5be3e)) {
-    frame_.min = glm::dvec3(-kRadius);
-    frame_.max = glm::dvec3(kRadius);
-    frame_.hasNormals = true;
+    extent_.min = glm::dvec3(-kRadius);
+    extent_.max = glm::dvec3(kRadius);
+    extent_.hasNormals = true;
   }
-  const ShapeExtent& frame() const override { return frame_; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override {
     for (ShapePoint& point : out) {
       CounterRandom random(key_, first++);
@@ -116,7 +116,7 @@ class SphereShape final : public Shape {
 
  private:
   static constexpr double kRadius = 10.0;
-  ShapeExtent frame_;
+  ShapeExtent extent_;
   std::uint64_t key_;
 };
 
@@ -126,10 +126,10 @@ class DegenerateShape final : public Shape {
  public:
   DegenerateShape(std::uint64_t points, std::uint64_t seed)
       : key_(mix64(seed ^ 0xde6e)), outlierStep_(points >= 1000 ? points / kOutliers : 0) {
-    frame_.min = outlierStep_ > 0 ? glm::dvec3(-kFar) : glm::dvec3(0.0);
-    frame_.max = outlierStep_ > 0 ? glm::dvec3(kFar) : glm::dvec3(kSide);
+    extent_.min = outlierStep_ > 0 ? glm::dvec3(-kFar) : glm::dvec3(0.0);
+    extent_.max = outlierStep_ > 0 ? glm::dvec3(kFar) : glm::dvec3(kSide);
   }
-  const ShapeExtent& frame() const override { return frame_; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override {
     for (ShapePoint& point : out) {
       const std::uint64_t index = first++;
@@ -158,7 +158,7 @@ class DegenerateShape final : public Shape {
     return uniform * kSide;
   }
 
-  ShapeExtent frame_;
+  ShapeExtent extent_;
   std::uint64_t key_, outlierStep_;
 };
 

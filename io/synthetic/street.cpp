@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/synthetic/city.h"
 #include "io/synthetic/random.h"
 #include "io/synthetic/scene_builder.h"
 
@@ -29,8 +28,8 @@ Primitive& SceneBuilder::roof(const glm::vec3& min, const glm::vec3& max, const 
   return p;
 }
 
-Primitive& SceneBuilder::cone(const glm::vec3& at, float radius, float height, float taper, Material material,
-                              std::uint32_t seed) {
+Primitive& SceneBuilder::cone(const glm::vec3& at, const ConeSize& size, Material material, std::uint32_t seed) {
+  const auto& [radius, height, taper] = size;
   Primitive& p = block(at, {2.0f * radius, 2.0f * radius, height}, material, seed);
   p.kind = PrimitiveKind::cone;
   p.taper = taper;
@@ -53,7 +52,7 @@ Primitive& SceneBuilder::foliage(const glm::vec3& centre, const glm::vec3& radiu
 
 void addTree(SceneBuilder& b, const glm::vec3& at, float height) {
   const std::uint32_t seed = b.newSeed();
-  b.cone(at, 0.05f + 0.018f * height, height * 0.6f, 0.55f, Material::bark, seed);
+  b.cone(at, {0.05f + 0.018f * height, height * 0.6f, 0.55f}, Material::bark, seed);
   const float spread = height * 0.22f;
   for (int i = 0; i < 6; ++i) {  // clumps of leaves around the top of the trunk
     const float angle = static_cast<float>(i) * 1.2566f + b.random.between(-0.4f, 0.4f);
@@ -67,7 +66,7 @@ void addTree(SceneBuilder& b, const glm::vec3& at, float height) {
 
 void addConifer(SceneBuilder& b, const glm::vec3& at, float height) {
   const std::uint32_t seed = b.newSeed();
-  b.cone(at, 0.03f * height, height * 0.9f, 0.2f, Material::bark, seed);
+  b.cone(at, {0.03f * height, height * 0.9f, 0.2f}, Material::bark, seed);
   for (int i = 0; i < 7; ++i) {  // whorls
     const float level = 0.18f + 0.12f * static_cast<float>(i),
                 radius = height * (0.25f - 0.033f * static_cast<float>(i));
@@ -77,8 +76,8 @@ void addConifer(SceneBuilder& b, const glm::vec3& at, float height) {
 }
 
 void addLamp(SceneBuilder& b, const glm::vec3& at, const glm::vec2& armDirection) {
-  b.cone(at, 0.16f, 0.9f, 0.6f, Material::metal);
-  b.cone({at.x, at.y, at.z + 0.9f}, 0.07f, 5.1f, 0.8f, Material::metal);
+  b.cone(at, {0.16f, 0.9f, 0.6f}, Material::metal);
+  b.cone({at.x, at.y, at.z + 0.9f}, {0.07f, 5.1f, 0.8f}, Material::metal);
   const glm::vec2 tip = glm::vec2(at.x, at.y) + armDirection * 1.3f;
   const glm::vec2 low = glm::min(tip, glm::vec2(at.x, at.y)) - 0.04f,
                   high = glm::max(tip, glm::vec2(at.x, at.y)) + 0.04f;
@@ -142,16 +141,16 @@ void addStall(SceneBuilder& b, const glm::vec3& at) {
 }
 
 void addFountain(SceneBuilder& b, const glm::vec3& at) {
-  b.cone(at, 6.0f, 0.18f, 1.0f, Material::sandstone);
-  b.cone(at, 4.8f, 0.50f, 1.0f, Material::water);
+  b.cone(at, {6.0f, 0.18f, 1.0f}, Material::sandstone);
+  b.cone(at, {4.8f, 0.50f, 1.0f}, Material::water);
   for (int i = 0; i < 24; ++i) {  // the rim, stone by stone
     const float angle = (static_cast<float>(i) + 0.5f) * 0.2617994f;
-    b.cone(at + glm::vec3(4.75f * std::cos(angle), 4.75f * std::sin(angle), 0.0f), 0.66f, 0.72f, 0.9f,
+    b.cone(at + glm::vec3(4.75f * std::cos(angle), 4.75f * std::sin(angle), 0.0f), {0.66f, 0.72f, 0.9f},
            Material::sandstone, static_cast<std::uint32_t>(i));
   }
-  b.cone(at, 0.6f, 2.6f, 0.55f, Material::sandstone, 3);
-  b.cone(at + glm::vec3(0.0f, 0.0f, 1.5f), 1.9f, 0.3f, 1.0f, Material::sandstone, 4);
-  b.cone(at + glm::vec3(0.0f, 0.0f, 1.8f), 1.75f, 0.06f, 1.0f, Material::water);
+  b.cone(at, {0.6f, 2.6f, 0.55f}, Material::sandstone, 3);
+  b.cone(at + glm::vec3(0.0f, 0.0f, 1.5f), {1.9f, 0.3f, 1.0f}, Material::sandstone, 4);
+  b.cone(at + glm::vec3(0.0f, 0.0f, 1.8f), {1.75f, 0.06f, 1.0f}, Material::water);
   b.ball(at + glm::vec3(0.0f, 0.0f, 3.0f), {0.5f, 0.5f, 0.6f}, Material::sandstone, 5);
   b.foliage(at + glm::vec3(0.0f, 0.0f, 4.0f), {0.5f, 0.5f, 1.6f}, 1.2f, Material::spray, 6);
   for (int i = 0; i < 8; ++i) {
@@ -159,33 +158,6 @@ void addFountain(SceneBuilder& b, const glm::vec3& at) {
     b.foliage(at + glm::vec3(2.9f * std::cos(angle), 2.9f * std::sin(angle), 0.9f), {0.35f, 0.35f, 0.9f}, 0.9f,
               Material::spray, 7);
   }
-}
-
-Surface streetSurface(const glm::vec2& position) {
-  const glm::vec2 cell = glm::floor(position / city::kPitch + 0.5f);
-  const glm::vec2 q = position - cell * city::kPitch;  // from the nearest crossing
-  const float half = city::kCarriageway * 0.5f;
-  const float grain = valueNoise(position.x * 11.0f, position.y * 11.0f, 21).value;
-  const float wear = valueNoise(position.x * 0.25f, position.y * 0.25f, 22).value;
-  Surface surface{glm::vec3(0.36f, 0.36f, 0.37f) * (0.78f + 0.25f * grain + 0.2f * wear), 0.15f, 0.0f, asprs::kRoad};
-  const bool inX = std::abs(q.x) < half, inY = std::abs(q.y) < half;  // on the street along y, along x
-  if (inX == inY) {                                                   // the crossing itself
-    const float lid = glm::distance(q, glm::vec2(1.4f, 1.1f));
-    if (lid < 0.42f) surface.albedo *= lid < 0.36f ? 0.62f : 0.4f;
-    return surface;
-  }
-  const float across = inX ? q.x : q.y, along = std::abs(inX ? q.y : q.x);
-  const bool zebra = along > half + 0.6f && along < half + 3.6f && std::fmod(across + half, 1.0f) < 0.5f &&
-                     std::abs(across) < half - 0.3f;
-  const bool stop = along > half + 4.4f && along < half + 4.8f && std::abs(across) < half - 0.25f &&
-                    (across > 0.0f) == ((inX ? q.y : -q.x) < 0.0f);
-  const bool middle = along > half + 5.5f && std::abs(across) < 0.07f && std::fmod(along, 4.0f) < 2.4f;
-  const bool edge = along > half + 5.5f && std::abs(std::abs(across) - (half - 2.1f)) < 0.05f &&
-                    std::fmod(along, 5.5f) < 5.2f;  // parking bays
-  if ((zebra || stop || middle || edge) && grain > 0.12f)
-    surface = {glm::vec3(0.86f, 0.86f, 0.83f) * (0.85f + 0.15f * wear), 0.8f, 0.0f, asprs::kRoad};
-  if (half - std::abs(across) < 0.3f) surface.albedo *= 0.85f;  // gutter
-  return surface;
 }
 
 }  // namespace strata::synthetic

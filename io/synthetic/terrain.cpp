@@ -30,10 +30,10 @@ class TerrainShape final : public Shape {
         key_(mix64(seed ^ 0x7e44a1)),
         noiseSeed_(static_cast<std::uint32_t>(key_)) {
     spacing_ = side_ / (static_cast<double>(strips_) + kOverlap);
-    frame_.origin = {500000.0, 5400000.0, 400.0};
-    frame_.max = {side_, side_, static_cast<double>(kReliefM + kTreeM)};
+    extent_.origin = {500000.0, 5400000.0, 400.0};
+    extent_.max = {side_, side_, static_cast<double>(kReliefM + kTreeM)};
   }
-  const ShapeExtent& frame() const override { return frame_; }
+  const ShapeExtent& extent() const override { return extent_; }
   void generate(std::uint64_t first, std::span<ShapePoint> out) const override {
     for (ShapePoint& point : out) measure(first++, point);
   }
@@ -122,7 +122,7 @@ class TerrainShape final : public Shape {
   double side_, spacing_ = 0.0;
   std::uint64_t strips_, points_, key_;
   std::uint32_t noiseSeed_;
-  ShapeExtent frame_;
+  ShapeExtent extent_;
 };
 
 }  // namespace

@@ -33,7 +33,7 @@
 #include "core/error.h"
 #include "core/percentile.h"
 #include "io/store/store_files.h"
-#include "io/synthetic/city.h"
+#include "io/synthetic/scenes.h"
 #include "io/synthetic/scanner.h"
 #include "lod/streamer.h"
 #include "render/create_rasterizer.h"

@@ -11,7 +11,7 @@
 
 #include "converter/options.h"
 #include "io/store/node_codec.h"
-#include "io/synthetic/city.h"
+#include "io/synthetic/scenes.h"
 #include "io/synthetic/scanner.h"
 #include "lod/coarse_depth.h"
 #include "lod/selection.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "io/synthetic/synthetic_source.h"
+#include "io/synthetic/shape_source.h"
 
 namespace strata {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "io/synthetic/city.h"
+#include "io/synthetic/scenes.h"
 #include "io/synthetic/random.h"
 #include "io/synthetic/scanner.h"
 

@@ -1,4 +1,4 @@
-#include "io/synthetic/synthetic_source.h"
+#include "io/synthetic/shape_source.h"
 
 #include <gtest/gtest.h>
 

@@ -1,22 +1,22 @@
-#include "io/synthetic/synthetic_source.h"
+#include "io/synthetic/shape_source.h"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <string_view>
 
 #include "core/error.h"
-#include "io/synthetic/city.h"
+#include "core/text.h"
 #include "io/synthetic/scanner.h"
+#include "io/synthetic/scenes.h"
 #include "io/synthetic/shape.h"
 
 namespace strata::synthetic {
 namespace {
 
 constexpr std::string_view kScheme = "synthetic:";
-constexpr std::size_t kChunkPoints = 4096;  // generated at a time, small enough for the second cache
+constexpr std::size_t kBlockPoints = 4096;  // generated at a time, small enough for the second cache
 
 using Factory = std::unique_ptr<Shape> (*)(std::uint64_t points, std::uint64_t seed);
 struct NamedShape {
@@ -42,9 +42,7 @@ struct Spec {
 /// Whole numbers, also as 1e9.
 std::uint64_t parsePoints(const std::string& spec, std::string_view text) {
   double value = 0.0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = failed == std::errc() && end == text.data() + text.size() && value == std::floor(value);
-  if (!whole || value < 1.0 || value > kMaxPoints) {
+  if (!parseWhole(text, value) || value != std::floor(value) || value < 1.0 || value > kMaxPoints) {
     throw UsageError(spec, "points: found '" + std::string(text) + "' (expected a whole number from 1 to 1e11)");
   }
   return static_cast<std::uint64_t>(value);
@@ -52,8 +50,7 @@ std::uint64_t parsePoints(const std::string& spec, std::string_view text) {
 
 std::uint64_t parseSeed(const std::string& spec, std::string_view text) {
   std::uint64_t value = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc() || end != text.data() + text.size()) {
+  if (!parseWhole(text, value)) {
     throw UsageError(spec, "seed: found '" + std::string(text) + "' (expected a whole number from 0 to 2^64 - 1)");
   }
   return value;
@@ -97,11 +94,11 @@ Spec parseSpec(const std::string& spec) {
   return result;
 }
 
-PointLayout layoutOf(const ShapeExtent& frame) {
+PointLayout layoutOf(const ShapeExtent& extent) {
   std::vector<Attribute> attributes = {{std::string(attribute::kRgb), ScalarType::u16, 3, "", 1.0, 0.0},
                                        {std::string(attribute::kIntensity), ScalarType::u16, 1, "", 1.0, 0.0},
                                        {std::string(attribute::kClassification), ScalarType::u8, 1, "", 1.0, 0.0}};
-  if (frame.hasNormals) attributes.push_back({std::string(attribute::kNormal), ScalarType::f32, 3, "", 1.0, 0.0});
+  if (extent.hasNormals) attributes.push_back({std::string(attribute::kNormal), ScalarType::f32, 3, "", 1.0, 0.0});
   return PointLayout(std::move(attributes));
 }
 
@@ -109,23 +106,23 @@ PointLayout layoutOf(const ShapeExtent& frame) {
 struct GridBox {
   glm::dvec3 low, high;
 };
-GridBox gridBox(const ShapeExtent& frame) {
-  return {glm::floor(frame.min / kStep + 0.5), glm::floor(frame.max / kStep + 0.5)};
+GridBox gridBox(const ShapeExtent& extent) {
+  return {glm::floor(extent.min / kStep + 0.5), glm::floor(extent.max / kStep + 0.5)};
 }
 
-SourceInfo describe(const std::string& path, const Spec& spec, const ShapeExtent& frame) {
-  const GridBox box = gridBox(frame);
+SourceInfo describe(const std::string& path, const Spec& spec, const ShapeExtent& extent) {
+  const GridBox box = gridBox(extent);
   SourceInfo info;
   info.path = path;
   info.format = "synthetic " + std::string(spec.shape->name);
   info.pointCount = spec.points;
   info.boundsExact = true;
-  info.origin = frame.origin;
-  info.bounds.add(frame.origin + box.low * kStep);
-  info.bounds.add(frame.origin + box.high * kStep);
+  info.origin = extent.origin;
+  info.bounds.add(extent.origin + box.low * kStep);
+  info.bounds.add(extent.origin + box.high * kStep);
   info.step = glm::dvec3(kStep);
   info.gridExact = true;
-  info.layout = layoutOf(frame);
+  info.layout = layoutOf(extent);
   info.uncompressedBytes = spec.points * (3 * sizeof(std::int32_t) + info.layout.stride());
   return info;
 }
@@ -145,27 +142,27 @@ void pack(const ShapePoint& point, bool withNormal, std::byte* record) {
   if (withNormal) std::memcpy(record + sizeof values + 1, &point.normal, sizeof point.normal);
 }
 
-class SyntheticReader final : public PointReader {
+class ShapeReader final : public PointReader {
  public:
-  SyntheticReader(std::shared_ptr<const Shape> shape, std::size_t stride, std::uint64_t first, std::uint64_t end)
+  ShapeReader(std::shared_ptr<const Shape> shape, std::size_t stride, std::uint64_t first, std::uint64_t end)
       : shape_(std::move(shape)), stride_(stride), next_(first), end_(end) {}
 
   bool read(PointBlock& block, std::size_t maxPoints) override {
     const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(maxPoints, end_ - next_));
     block.positions.resize(count);
     block.attributes.resize(count * stride_);
-    const ShapeExtent& frame = shape_->frame();
-    const GridBox box = gridBox(frame);
+    const ShapeExtent& extent = shape_->extent();
+    const GridBox box = gridBox(extent);
     for (std::size_t done = 0; done < count;) {
-      chunk_.assign(std::min(kChunkPoints, count - done), ShapePoint{});
-      shape_->generate(next_, chunk_);
-      for (std::size_t i = 0; i < chunk_.size(); ++i) {
-        const glm::dvec3 steps = glm::floor(chunk_[i].position / kStep + 0.5);
+      block_.assign(std::min(kBlockPoints, count - done), ShapePoint{});
+      shape_->generate(next_, block_);
+      for (std::size_t i = 0; i < block_.size(); ++i) {
+        const glm::dvec3 steps = glm::floor(block_[i].position / kStep + 0.5);
         block.positions[done + i] = glm::clamp(steps, box.low, box.high) * kStep;
-        pack(chunk_[i], frame.hasNormals, block.attributes.data() + (done + i) * stride_);
+        pack(block_[i], extent.hasNormals, block.attributes.data() + (done + i) * stride_);
       }
-      done += chunk_.size();
-      next_ += chunk_.size();
+      done += block_.size();
+      next_ += block_.size();
     }
     return count > 0;
   }
@@ -174,13 +171,13 @@ class SyntheticReader final : public PointReader {
   std::shared_ptr<const Shape> shape_;
   std::size_t stride_;
   std::uint64_t next_, end_;
-  std::vector<ShapePoint> chunk_;
+  std::vector<ShapePoint> block_;
 };
 
-class SyntheticSource final : public PointSource {
+class ShapeSource final : public PointSource {
  public:
-  SyntheticSource(const std::string& path, const Spec& spec)
-      : shape_(spec.shape->make(spec.points, spec.seed)), info_(describe(path, spec, shape_->frame())) {}
+  ShapeSource(const std::string& path, const Spec& spec)
+      : shape_(spec.shape->make(spec.points, spec.seed)), info_(describe(path, spec, shape_->extent())) {}
 
   const SourceInfo& info() const override { return info_; }
   std::size_t partCount() const override {
@@ -189,7 +186,7 @@ class SyntheticSource final : public PointSource {
   std::unique_ptr<PointReader> openPart(std::size_t part) const override {
     const std::uint64_t first = static_cast<std::uint64_t>(part) * kPartPoints;
     const std::uint64_t end = std::min(first + kPartPoints, info_.pointCount);
-    return std::make_unique<SyntheticReader>(shape_, info_.layout.stride(), std::min(first, end), end);
+    return std::make_unique<ShapeReader>(shape_, info_.layout.stride(), std::min(first, end), end);
   }
 
  private:
@@ -200,7 +197,7 @@ class SyntheticSource final : public PointSource {
 }  // namespace
 
 std::unique_ptr<PointSource> openScan(const std::string& spec) {
-  return std::make_unique<SyntheticSource>(spec, parseSpec(spec));
+  return std::make_unique<ShapeSource>(spec, parseSpec(spec));
 }
 
 }  // namespace strata::synthetic
