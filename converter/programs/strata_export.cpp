@@ -71,7 +71,7 @@ std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInf
                                          const Box& bounds, std::optional<int> lasFormat) {
   const std::string extension = scanExtension(path);
   if (extension == ".las" || extension == ".laz")
-    return createLasWriter(path, info, points, bounds, extension == ".laz", lasFormat);
+    return createLasWriter(path, info, {points, bounds}, {extension == ".laz", lasFormat});
   return createPlyWriter(path, info, points);
 }
 

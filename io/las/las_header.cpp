@@ -58,8 +58,8 @@ std::size_t characterBytes(std::string_view text) {
 
 std::string versionText(unsigned major, unsigned minor) { return std::to_string(major) + "." + std::to_string(minor); }
 
-/// Magic, version, sizes and offsets: what decides where all other fields are.
-void checkFrame(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes) {
+/// Checks signature, version, sizes and offsets, on which the place of every other field depends.
+void checkSizes(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes) {
   if (fileBytes == 0) throw Error(file, "the file is empty, found 0 bytes (expected a LAS or LAZ file)");
   if (bytes.size() < 4 || std::memcmp(bytes.data(), "LASF", 4) != 0)
     throw Error(file, "not a LAS or LAZ file, found no signature (expected LASF)");
@@ -173,7 +173,7 @@ std::string lasText(std::string_view field) {
 std::uint16_t lasFormatBytes(int pointFormat) { return kFormatBytes[pointFormat]; }
 
 LasHeader parseLasHeader(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes) {
-  checkFrame(file, bytes, fileBytes);
+  checkSizes(file, bytes, fileBytes);
   LasHeader header;
   header.versionMinor = load<std::uint8_t>(bytes, 25);
   header.fileSourceId = load<std::uint16_t>(bytes, 4);

@@ -8,8 +8,10 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "io/las/las_header.h"
 #include "io/las/las_record.h"
 #include "io/las/las_vlr.h"
+#include "io/las/laz_source.h"
 
 namespace strata {
 namespace {

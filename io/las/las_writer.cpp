@@ -1,15 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "core/error.h"
-#include "io/file/output_file.h"
+#include "io/file/part_file.h"
+#include "io/las/las_export_layout.h"
 #include "io/las/las_header.h"
-#include "io/las/las_target.h"
 #include "io/las/laz_codec.h"
 #include "io/scan/scan_writer.h"
 
@@ -19,51 +18,22 @@ namespace {
 constexpr std::size_t kBatchPoints = 4096;
 constexpr double kAngleUnit = 0.006;  // degrees, of formats 6 to 10
 
-/// A file under construction; goes away unless keep() gives it its name.
-class PartFile {
- public:
-  explicit PartFile(const std::string& path) : path_(path), part_(path + ".part"), file_(std::in_place, part_) {}
-  ~PartFile() {
-    if (!file_) return;
-    file_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
-  }
-  PartFile(const PartFile&) = delete;
-  PartFile& operator=(const PartFile&) = delete;
-
-  OutputFile& operator*() { return *file_; }
-  OutputFile* operator->() { return &*file_; }
-  void keep() {
-    file_->finish();
-    std::error_code failure;
-    std::filesystem::rename(part_, path_, failure);
-    if (failure) throw Error(path_, "renaming " + part_ + ": " + failure.message());
-    file_.reset();
-  }
-
- private:
-  std::string path_;
-  std::string part_;
-  std::optional<OutputFile> file_;
-};
-
 class LasWriter final : public ScanWriter {
  public:
-  LasWriter(const std::string& path, const StoreInfo& info, std::uint64_t points, const Box& bounds, bool compress,
-            std::optional<int> pointFormat)
+  LasWriter(const std::string& path, const StoreInfo& info, const ExportedPoints& points,
+            const LasWriterOptions& options)
       : path_(path),
-        target_(chooseLasTarget(path, info, points, bounds, pointFormat)),
+        layout_(chooseLasExportLayout(path, info, points, options.pointFormat)),
         stride_(info.layout.stride()),
-        vlrs_(target_.meta.vlrs),
+        vlrs_(layout_.meta.vlrs),
         file_(path) {
-    if (compress) {
-      encoder_.emplace(*file_, target_.format);
+    if (options.compress) {
+      encoder_.emplace(*file_, layout_.format);
       vlrs_.push_back({"laszip encoded", 22204, "by LASzip", encoder_->record()});
     }
     LasTotals planned;
-    planned.points = points;
-    file_->append(encodeLasHead(path_, target_.meta, vlrs_, compress, planned));
+    planned.points = points.count;
+    file_->append(encodeLasHead(path_, layout_.meta, vlrs_, options.compress, planned));
     if (encoder_) encoder_->start();
   }
 
@@ -75,15 +45,15 @@ class LasWriter final : public ScanWriter {
   void finish() override {
     if (encoder_) encoder_->finish();
     totals_.evlrStart = file_->size();
-    if (target_.meta.versionMinor >= 4) file_->append(encodeEvlrs(vlrs_));
+    if (layout_.meta.versionMinor >= 4) file_->append(encodeEvlrs(vlrs_));
     if (totals_.points != 0) {
       for (int axis = 0; axis < 3; ++axis) {
-        const double scale = target_.meta.scale[axis], offset = target_.meta.offset[axis];
+        const double scale = layout_.meta.scale[axis], offset = layout_.meta.offset[axis];
         totals_.bounds.min[axis] = std::min(first_[axis] * scale, last_[axis] * scale) + offset;
         totals_.bounds.max[axis] = std::max(first_[axis] * scale, last_[axis] * scale) + offset;
       }
     }
-    file_->writeAt(0, encodeLasHead(path_, target_.meta, vlrs_, encoder_.has_value(), totals_));
+    file_->writeAt(0, encodeLasHead(path_, layout_.meta, vlrs_, encoder_.has_value(), totals_));
     file_.keep();
   }
 
@@ -93,15 +63,15 @@ class LasWriter final : public ScanWriter {
     for (int axis = 0; axis < 3; ++axis)
       for (std::size_t i = 0; i < count; ++i) integers_[i][axis] = toInteger(points.grid[axis][first + i], axis);
     const std::byte* packed = points.attributes.data() + first * stride_;
-    if (!target_.sameRecords) packed = repack(packed, count);
-    const std::size_t packedBytes = lasStride(target_.format);
+    if (!layout_.sameRecords) packed = repack(packed, count);
+    const std::size_t packedBytes = lasStride(layout_.format);
     for (std::size_t i = 0; i < count; ++i) {
       ++totals_.byReturn[std::min(static_cast<std::size_t>(packed[i * packedBytes + 2]), std::size_t{15})];
       first_ = glm::min(first_, integers_[i]);
       last_ = glm::max(last_, integers_[i]);
     }
-    records_.resize(count * target_.format.recordBytes);
-    packLasRecords(target_.format, integers_, packed, records_.data());
+    records_.resize(count * layout_.format.recordBytes);
+    packLasRecords(layout_.format, integers_, packed, records_.data());
     if (encoder_)
       encoder_->write(records_);
     else
@@ -110,27 +80,27 @@ class LasWriter final : public ScanWriter {
   }
 
   std::int32_t toInteger(std::int64_t stored, int axis) const {
-    const std::int64_t integer = (stored + target_.shift[axis]) / target_.divide[axis];
+    const std::int64_t integer = (stored + layout_.shift[axis]) / layout_.divide[axis];
     if (integer < std::numeric_limits<std::int32_t>::min() || integer > std::numeric_limits<std::int32_t>::max())
       throw Error(path_, "a point lies outside of the stated bounds, found coordinate " + std::to_string(integer) +
                              " (expected 32 bits)");
     return static_cast<std::int32_t>(integer);
   }
 
-  /// The store's records as packed records of the file's layout; fields that the store has not are 0.
+  /// Turns the store's records into packed records of the file. Fields that the store does not have are 0.
   const std::byte* repack(const std::byte* stored, std::size_t count) {
-    const std::size_t packedBytes = lasStride(target_.format);
+    const std::size_t packedBytes = lasStride(layout_.format);
     packed_.assign(count * packedBytes, std::byte{0});
     for (std::size_t i = 0; i < count; ++i) {
       const std::byte* from = stored + i * stride_;
       std::byte* to = packed_.data() + i * packedBytes;
-      for (const LasTarget::Copy& copy : target_.copies) std::memcpy(to + copy.to, from + copy.from, copy.bytes);
-      if (target_.rankAt >= 0) addAngle(static_cast<std::int8_t>(from[target_.rankAt]), to + target_.angleAt);
+      for (const LasExportLayout::Copy& copy : layout_.copies) std::memcpy(to + copy.to, from + copy.from, copy.bytes);
+      if (layout_.rankAt >= 0) addAngle(static_cast<std::int8_t>(from[layout_.rankAt]), to + layout_.angleAt);
     }
     return packed_.data();
   }
 
-  /// Points of a store have their angle as a rank or as an angle, the other is 0.
+  /// Every point of a store has its angle as a rank or as an angle; the other one is 0.
   static void addAngle(std::int8_t rank, std::byte* field) {
     std::int16_t angle = 0;
     std::memcpy(&angle, field, sizeof angle);
@@ -139,7 +109,7 @@ class LasWriter final : public ScanWriter {
   }
 
   std::string path_;
-  LasTarget target_;
+  LasExportLayout layout_;
   std::size_t stride_;  ///< of the store's records
   std::vector<LasMeta::Vlr> vlrs_;
   PartFile file_;
@@ -154,9 +124,9 @@ class LasWriter final : public ScanWriter {
 
 }  // namespace
 
-std::unique_ptr<ScanWriter> createLasWriter(const std::string& path, const StoreInfo& info, std::uint64_t points,
-                                            const Box& bounds, bool compress, std::optional<int> pointFormat) {
-  return std::make_unique<LasWriter>(path, info, points, bounds, compress, pointFormat);
+std::unique_ptr<ScanWriter> createLasWriter(const std::string& path, const StoreInfo& info,
+                                            const ExportedPoints& points, const LasWriterOptions& options) {
+  return std::make_unique<LasWriter>(path, info, points, options);
 }
 
 }  // namespace strata

@@ -1,3 +1,5 @@
+#include "io/las/laz_source.h"
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -5,7 +7,6 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "io/las/las_record.h"
-#include "io/las/las_source.h"
 #include "io/las/laz_codec.h"
 #include "io/las/laz_header.h"
 
@@ -21,37 +22,36 @@ struct LazPart {
   std::uint64_t firstPoint = 0;  ///< in the file, for messages
 };
 
-/// Compressed records, decoded by LASzip: a reader has a decoder of its own, so parts run side by side.
+/// A file's heads, and its chunks as parts.
+struct LazContents {
+  LasHeader header;
+  LazFormat format;
+  std::vector<LazPart> parts;
+};
+
+/// Compressed records. Every reader has a decoder of its own, so parts are decoded side by side.
 class LazSource final : public PointSource {
  public:
-  LazSource(std::unique_ptr<ByteSource> file, const LasHeader& header, LazFormat format, SourceInfo info,
-            std::vector<LazPart> parts, bool skipDamaged)
-      : file_(std::move(file)),
-        header_(header),
-        format_(std::move(format)),
-        info_(std::move(info)),
-        parts_(std::move(parts)),
-        skipDamaged_(skipDamaged) {}
+  LazSource(std::unique_ptr<ByteSource> file, LazContents contents, SourceInfo info, bool skipDamaged)
+      : file_(std::move(file)), contents_(std::move(contents)), info_(std::move(info)), skipDamaged_(skipDamaged) {}
 
   const SourceInfo& info() const override { return info_; }
-  std::size_t partCount() const override { return parts_.size(); }
+  std::size_t partCount() const override { return contents_.parts.size(); }
   std::unique_ptr<PointReader> openPart(std::size_t part) const override { return open(part, false); }
   std::unique_ptr<PointReader> openIntegers(std::size_t part) const override { return open(part, true); }
 
   std::unique_ptr<LazDecoder> openRun(const LazRun& run) const {
-    return std::make_unique<LazDecoder>(*file_, header_, format_, run);
+    return std::make_unique<LazDecoder>(*file_, contents_.header, contents_.format, run);
   }
-  const LasHeader& header() const { return header_; }
+  const LasHeader& header() const { return contents_.header; }
   bool skipDamaged() const { return skipDamaged_; }
 
  private:
   std::unique_ptr<PointReader> open(std::size_t part, bool integers) const;
 
   std::unique_ptr<ByteSource> file_;
-  LasHeader header_;
-  LazFormat format_;
+  LazContents contents_;
   SourceInfo info_;
-  std::vector<LazPart> parts_;
   bool skipDamaged_;
 };
 
@@ -132,7 +132,7 @@ class LazReader final : public PointReader {
 };
 
 std::unique_ptr<PointReader> LazSource::open(std::size_t part, bool integers) const {
-  return std::make_unique<LazReader>(*this, parts_[part], integers);
+  return std::make_unique<LazReader>(*this, contents_.parts[part], integers);
 }
 
 /// Cuts the chunks that hold the first `points` points into parts of about kPartPoints.
@@ -158,7 +158,7 @@ std::vector<LazPart> partsOf(const std::vector<LazChunk>& chunks, bool equalChun
   return parts;
 }
 
-/// All points as one part, where no chunk table says more.
+/// All points as one part, for files without a chunk table.
 std::vector<LazPart> onePart(const ByteSource& file, std::uint64_t begin, std::uint64_t chunkPoints,
                              std::uint64_t points) {
   const std::uint64_t bytes = file.size() - begin;
@@ -168,7 +168,7 @@ std::vector<LazPart> onePart(const ByteSource& file, std::uint64_t begin, std::u
   return {LazPart{{LazRun{{}, begin, file.size(), chunkPoints, points}}, 0}};
 }
 
-/// The chunk table; nothing where there is none, or none that is sound and the user takes what there is.
+/// The chunk table. Empty when there is none, or when it is damaged and the user accepts that.
 std::vector<LazChunk> findChunks(const ByteSource& file, const LasHeader& header, const LazFormat& format,
                                  bool skipDamaged) {
   try {
@@ -218,8 +218,8 @@ std::unique_ptr<PointSource> openLaz(std::unique_ptr<ByteSource> file, const Las
     }
   }
   info.uncompressedBytes = points * header.recordBytes;
-  return std::make_unique<LazSource>(std::move(file), header, std::move(format), std::move(info), std::move(parts),
-                                     options.skipDamaged);
+  return std::make_unique<LazSource>(std::move(file), LazContents{header, std::move(format), std::move(parts)},
+                                     std::move(info), options.skipDamaged);
 }
 
 }  // namespace strata

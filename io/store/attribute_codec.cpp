@@ -23,14 +23,14 @@ T unfolded(T value) {
   return static_cast<T>(static_cast<T>(value >> 1) ^ static_cast<T>(-static_cast<T>(value & 1)));
 }
 
-/// Byte planes of the values from `begin` to `end`: byte b of value i at out[b * (end - begin) + i - begin].
+/// Splits the values from `begin` to `end` into bytes: byte b of value i goes to out[b * (end - begin) + i - begin].
 template <class T>
-void splitBytes(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t begin, std::size_t end,
-                Transform transform, std::uint8_t* out) {
+void splitBytes(const ComponentSource& source, std::size_t begin, std::size_t end, Transform transform,
+                std::uint8_t* out) {
   const std::size_t count = end - begin;
   const auto value = [&](std::size_t i) {
     T v;
-    std::memcpy(&v, source.first + (order.empty() ? i : order[i]) * source.stride, sizeof v);
+    std::memcpy(&v, source.first + (source.order.empty() ? i : source.order[i]) * source.stride, sizeof v);
     return v;
   };
   T before = begin > 0 ? value(begin - 1) : T{0};
@@ -43,41 +43,40 @@ void splitBytes(const ComponentSource& source, std::span<const std::uint32_t> or
 }
 
 template <class T>
-double sampleBits(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t count,
-                  Transform transform, std::vector<std::uint8_t>& spare) {
+double sampleBits(const ComponentSource& source, std::size_t count, Transform transform,
+                  std::vector<std::uint8_t>& spare) {
   const std::size_t sample = std::min(count, kSampleValues), begin = (count - sample) / 2;
-  splitBytes<T>(source, order, begin, begin + sample, transform, spare.data());
+  splitBytes<T>(source, begin, begin + sample, transform, spare.data());
   double bits = 0.0;
   for (std::size_t b = 0; b < sizeof(T); ++b) bits += entropyBits(std::span(spare).subspan(b * sample, sample));
   return bits;
 }
 
 template <class T>
-void append(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t count,
-            std::vector<std::uint8_t>& spare, std::vector<std::byte>& out) {
+void append(const ComponentSource& source, std::size_t count, std::vector<std::uint8_t>& spare,
+            std::vector<std::byte>& out) {
   spare.resize(count * sizeof(T));
   const Transform transform =
-      sampleBits<T>(source, order, count, kDifferences, spare) < sampleBits<T>(source, order, count, kValues, spare)
-          ? kDifferences
-          : kValues;
-  splitBytes<T>(source, order, 0, count, transform, spare.data());
+      sampleBits<T>(source, count, kDifferences, spare) < sampleBits<T>(source, count, kValues, spare) ? kDifferences
+                                                                                                       : kValues;
+  splitBytes<T>(source, 0, count, transform, spare.data());
   out.push_back(static_cast<std::byte>(transform));
   for (std::size_t b = 0; b < sizeof(T); ++b) appendColumn(std::span(spare).subspan(b * count, count), out);
 }
 
 }  // namespace
 
-void appendComponent(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t count,
-                     std::vector<std::uint8_t>& spare, std::vector<std::byte>& out) {
+void appendComponent(const ComponentSource& source, std::size_t count, std::vector<std::uint8_t>& spare,
+                     std::vector<std::byte>& out) {
   switch (source.width) {
     case 1:
-      return append<std::uint8_t>(source, order, count, spare, out);
+      return append<std::uint8_t>(source, count, spare, out);
     case 2:
-      return append<std::uint16_t>(source, order, count, spare, out);
+      return append<std::uint16_t>(source, count, spare, out);
     case 4:
-      return append<std::uint32_t>(source, order, count, spare, out);
+      return append<std::uint32_t>(source, count, spare, out);
     default:
-      return append<std::uint64_t>(source, order, count, spare, out);
+      return append<std::uint64_t>(source, count, spare, out);
   }
 }
 

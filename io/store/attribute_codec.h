@@ -8,28 +8,29 @@
 
 namespace strata {
 
-/// One component of an attribute (or of the colour residual) over all points in stored order, as unsigned integers of
-/// its width. Stored: u8 0 = the values, 1 = differences to the point before, sign in the lowest bit; then a column
-/// (column_codec.h) for each byte of the width, the lowest first.
+/// The bytes of one component of an attribute, or of the colour residual, over all points in stored order. Values count
+/// as unsigned integers of their width. Stored are a u8, 0 for the values themselves or 1 for differences to the point
+/// before with the sign in the lowest bit, and then a column (column_codec.h) for each byte of the width, lowest first.
 
-/// Appends `count` values of `width` 1, 2, 4 or 8 bytes that stand `stride` apart from `first` on, in the order of
-/// `order` (empty: as they stand). `spare` is working memory.
+/// The values of a component in memory.
 struct ComponentSource {
-  const std::byte* first;
-  std::size_t stride;
-  std::size_t width;
+  const std::byte* first;                ///< value of point 0
+  std::size_t stride;                    ///< bytes from the value of one point to that of the next
+  std::size_t width;                     ///< bytes of a value: 1, 2, 4 or 8
+  std::span<const std::uint32_t> order;  ///< points in stored order; empty when they are in it already
 };
-void appendComponent(const ComponentSource& source, std::span<const std::uint32_t> order, std::size_t count,
-                     std::vector<std::uint8_t>& spare, std::vector<std::byte>& out);
+/// Appends `count` values. `spare` is working memory.
+void appendComponent(const ComponentSource& source, std::size_t count, std::vector<std::uint8_t>& spare,
+                     std::vector<std::byte>& out);
 
-/// Gives back one component in stored order. T: unsigned, of the component's width.
+/// Gives back one component in stored order. T is unsigned and as wide as the component.
 template <class T>
 class ComponentDecoder {
  public:
-  /// Moves `stored` behind the component. False when the bytes do not fit. `spare` is working memory, which has to stay
-  /// as it is until all has been read.
+  /// Takes the component off the front of `stored`. False when the bytes are no such component. `spare` is working
+  /// memory that must not change until the last read().
   bool open(std::span<const std::byte>& stored, std::size_t count, std::vector<std::uint8_t>& spare);
-  /// The next values.
+  /// Fills `out` with the next values.
   void read(std::span<T> out);
 
  private:

@@ -261,7 +261,7 @@ void addResiduals(NodeEncoding& node, ResidualUnit unit) {
   if (residuals.empty()) return finishPlane(node, kColourResidual, kConstant, start);
   const auto* const first = reinterpret_cast<const std::byte*>(residuals.data());
   for (std::size_t c = 0; c < 3; ++c)
-    appendComponent({first + 2 * c, 6, 2}, {}, node.count(), node.buffers.spare, node.body);
+    appendComponent({first + 2 * c, 6, 2, {}}, node.count(), node.buffers.spare, node.body);
   finishPlane(node, kColourResidual, kColumns, start);
 }
 
@@ -305,7 +305,7 @@ void addAttribute(NodeEncoding& node, int layoutIndex) {
   }
   const std::size_t width = scalarBytes(attribute.type);
   for (std::size_t c = 0; c < attribute.components; ++c)
-    appendComponent({first + c * width, node.info.layout.stride(), width}, node.order.index, node.count(),
+    appendComponent({first + c * width, node.info.layout.stride(), width, node.order.index}, node.count(),
                     node.buffers.spare, node.body);
   finishPlane(node, id, kColumns, start);
 }

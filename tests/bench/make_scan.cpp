@@ -75,7 +75,7 @@ class PcdWriter final : public ScanWriter {
 std::unique_ptr<ScanWriter> createWriter(const std::string& path, const StoreInfo& info) {
   if (path.ends_with(".pcd")) return std::make_unique<PcdWriter>(path, info);
   if (path.ends_with(".las") || path.ends_with(".laz"))
-    return createLasWriter(path, info, info.points, info.bounds, path.ends_with(".laz"));
+    return createLasWriter(path, info, {info.points, info.bounds}, {path.ends_with(".laz"), {}});
   throw UsageError(path, "unknown format (expected .las, .laz or .pcd)");
 }
 

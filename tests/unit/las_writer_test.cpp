@@ -91,7 +91,7 @@ TEST_P(EveryFormat, ComesBackBitForBit) {
   const std::string path = (folder / (compress ? "out.laz" : "out.las")).string();
   // Enough for two chunks of 50 000 points.
   const RandomStore store = randomStore(format, 60001, 7);
-  const auto writer = createLasWriter(path, store.info, store.points.count(), store.bounds, compress);
+  const auto writer = createLasWriter(path, store.info, {store.points.count(), store.bounds}, {compress, {}});
   writer->write(store.points);
   EXPECT_FALSE(std::filesystem::exists(path));
   writer->finish();
@@ -118,7 +118,7 @@ TEST(LasWriter, LeavesNothingBehindWhenItIsNotFinished) {
   const test::TempFolder folder;
   const RandomStore store = randomStore({3, 34}, 10, 1);
   for (const bool compress : {false, true}) {
-    const auto writer = createLasWriter((folder / "out.las").string(), store.info, 10, store.bounds, compress);
+    const auto writer = createLasWriter((folder / "out.las").string(), store.info, {10, store.bounds}, {compress, {}});
     writer->write(store.points);
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
@@ -129,7 +129,7 @@ TEST(LasWriter, WritesFilesWithoutPoints) {
   for (const bool compress : {false, true}) {
     const RandomStore store = randomStore({compress ? 7 : 3, static_cast<std::uint16_t>(compress ? 36 : 34)}, 0, 1);
     const std::string path = (folder / "out.las").string();
-    createLasWriter(path, store.info, 0, store.bounds, compress)->finish();
+    createLasWriter(path, store.info, {0, store.bounds}, {compress, {}})->finish();
     EXPECT_EQ(openLas(path, {})->info().pointCount, 0u);
   }
 }
@@ -167,11 +167,11 @@ TEST(LasWriter, GivesOtherCloudsAFormatThatHoldsTheirAttributes) {
   }
   const Box wide{info.grid.offset, info.grid.offset + 5000000.001};
   const std::string path = (folder / "out.laz").string();
-  EXPECT_THROW(createLasWriter(path, info, 3, wide, true), Error);
+  EXPECT_THROW(createLasWriter(path, info, {3, wide}, {true, {}}), Error);
 
   for (auto& axis : points.grid) axis = {4000000000, 5000000000, 5000000001};
   const Box bounds{info.grid.offset + 4000000.0, info.grid.offset + 5000000.001};
-  const auto writer = createLasWriter(path, info, 3, bounds, true);
+  const auto writer = createLasWriter(path, info, {3, bounds}, {true, {}});
   writer->write(points);
   writer->finish();
 
@@ -213,7 +213,7 @@ TEST(LasWriter, WritesTheFormatThatIsAskedFor) {
   const Box bounds{glm::dvec3(0.001), glm::dvec3(0.003)};
   for (const int format : {0, 1, 2, 3, 6, 7, 8}) {
     const std::string path = (folder / ("out" + std::to_string(format) + ".las")).string();
-    const auto writer = createLasWriter(path, info, 3, bounds, false, format);
+    const auto writer = createLasWriter(path, info, {3, bounds}, {false, format});
     writer->write(points);
     writer->finish();
     const auto source = openLas(path, {});
@@ -234,7 +234,7 @@ TEST(LasWriter, WritesTheFormatThatIsAskedFor) {
   }
   info.layout = PointLayout({column(attribute::kClassification, ScalarType::u8)});
   info.ranges = {{0, 32, 0, 32}};
-  EXPECT_THROW(createLasWriter((folder / "no.las").string(), info, 3, bounds, false, 2), Error);
+  EXPECT_THROW(createLasWriter((folder / "no.las").string(), info, {3, bounds}, {false, 2}), Error);
 }
 
 TEST(LasWriter, LeavesTheSourcesFormatWhenValuesDoNotFitIt) {
@@ -243,7 +243,7 @@ TEST(LasWriter, LeavesTheSourcesFormatWhenValuesDoNotFitIt) {
   store.info.ranges.resize(store.info.layout.attributes().size());
   store.info.ranges[static_cast<std::size_t>(store.info.layout.find(attribute::kClassification))].max = 64;
   const std::string path = (folder / "out.las").string();
-  const auto writer = createLasWriter(path, store.info, 5, store.bounds, false);
+  const auto writer = createLasWriter(path, store.info, {5, store.bounds}, {false, {}});
   writer->write(store.points);
   writer->finish();
   EXPECT_EQ(openLas(path, {})->info().las->pointFormat, 7);
@@ -272,7 +272,7 @@ TEST(DamagedLaz, IsReportedAndSkippedWhereTheUserWantsIt) {
   for (const int pointFormat : {1, 6}) {
     const LasRecordFormat format{pointFormat, lasFormatBytes(pointFormat)};
     const RandomStore store = randomStore(format, 120000, 5);
-    const auto writer = createLasWriter(path, store.info, store.points.count(), store.bounds, true);
+    const auto writer = createLasWriter(path, store.info, {store.points.count(), store.bounds}, {true, {}});
     writer->write(store.points);
     writer->finish();
     const auto size = std::filesystem::file_size(path);
@@ -296,7 +296,7 @@ TEST(DamagedLaz, WithBytesFlippedIsReadOrRefused) {
     const LasRecordFormat format{pointFormat, static_cast<std::uint16_t>(lasFormatBytes(pointFormat) + 3)};
     const RandomStore store = randomStore(format, 500, 5);
     const std::string path = (folder / "sound.laz").string(), damaged = (folder / "damaged.laz").string();
-    const auto writer = createLasWriter(path, store.info, store.points.count(), store.bounds, true);
+    const auto writer = createLasWriter(path, store.info, {store.points.count(), store.bounds}, {true, {}});
     writer->write(store.points);
     writer->finish();
     std::ifstream in(path, std::ios::binary);

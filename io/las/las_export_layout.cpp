@@ -1,4 +1,4 @@
-#include "io/las/las_target.h"
+#include "io/las/las_export_layout.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +14,11 @@ namespace {
 
 constexpr double kSmallestInteger = std::numeric_limits<std::int32_t>::min();
 constexpr double kLargestInteger = std::numeric_limits<std::int32_t>::max();
-/// Share of a step by which two grids may be apart and still be called the same: what doubles lose at 1e7 m.
+/// Two grids count as the same when they are apart by at most this share of a step, which is what doubles lose at 1e7
+/// m.
 constexpr double kSameGrid = 1e-3;
 
-/// Largest value of an attribute over the store; 0 where it has none of this name.
+/// The largest value of an attribute in the store; 0 when there is no such attribute.
 double largest(const StoreInfo& info, std::string_view name) {
   const int index = info.layout.find(name);
   return index < 0 || static_cast<std::size_t>(index) >= info.ranges.size()
@@ -27,9 +28,9 @@ double largest(const StoreInfo& info, std::string_view name) {
 
 bool sameType(const Attribute& a, const Attribute& b) { return a.type == b.type && a.components == b.components; }
 
-/// Where every attribute of `from` goes in `to`; nothing when one has no place.
-std::optional<std::vector<LasTarget::Copy>> copiesBetween(const PointLayout& from, const PointLayout& to) {
-  std::vector<LasTarget::Copy> copies;
+/// The copies that put every attribute of `from` where `to` has it; nothing when one of them has no place there.
+std::optional<std::vector<LasExportLayout::Copy>> copiesBetween(const PointLayout& from, const PointLayout& to) {
+  std::vector<LasExportLayout::Copy> copies;
   for (std::size_t i = 0; i < from.attributes().size(); ++i) {
     const Attribute& attribute = from.attributes()[i];
     if (attribute.isInternal()) continue;
@@ -50,18 +51,18 @@ bool fitsBitFields(const StoreInfo& info, int pointFormat) {
           largest(info, attribute::kNumberOfReturns) <= 7);
 }
 
-/// The source's format, where every attribute has a place in it.
-std::optional<LasTarget> sourceTarget(const StoreInfo& info, std::uint64_t points) {
+/// The source's own format; nothing when an attribute has no place in it.
+std::optional<LasExportLayout> sourceLayout(const StoreInfo& info, std::uint64_t points) {
   if (!info.las || !fitsBitFields(info, info.las->pointFormat)) return {};
   if (info.las->versionMinor < 4 && points > std::numeric_limits<std::uint32_t>::max()) return {};
-  LasTarget target;
-  target.meta = *info.las;
-  target.format = {info.las->pointFormat, info.las->recordBytes};
-  const PointLayout layout = lasLayout(target.format, info.las->vlrs);
+  LasExportLayout out;
+  out.meta = *info.las;
+  out.format = {info.las->pointFormat, info.las->recordBytes};
+  const PointLayout layout = lasLayout(out.format, info.las->vlrs);
   auto copies = copiesBetween(info.layout, layout);
   if (!copies) return {};
-  target.copies = std::move(*copies);
-  return target;
+  out.copies = std::move(*copies);
+  return out;
 }
 
 /// The smallest of formats 6 to 8 that has a field for the colours.
@@ -70,14 +71,14 @@ int modernFormat(const StoreInfo& info) {
   return nir ? 8 : rgb ? 7 : 6;
 }
 
-/// LAS 1.4 with records of the given format; what it has no field for becomes extra bytes.
-LasTarget modernTarget(const StoreInfo& info, int pointFormat) {
-  LasTarget target;
-  target.format.pointFormat = pointFormat;
-  target.format.recordBytes = lasFormatBytes(pointFormat);
-  const PointLayout fields = lasLayout(target.format, {});
+/// LAS 1.4 with records of the given format. Attributes that it has no field for become extra bytes.
+LasExportLayout modernLayout(const StoreInfo& info, int pointFormat) {
+  LasExportLayout out;
+  out.format.pointFormat = pointFormat;
+  out.format.recordBytes = lasFormatBytes(pointFormat);
+  const PointLayout fields = lasLayout(out.format, {});
   const int angle = fields.find(attribute::kScanAngle);
-  if (angle >= 0) target.angleAt = fields.offset(static_cast<std::size_t>(angle));
+  if (angle >= 0) out.angleAt = fields.offset(static_cast<std::size_t>(angle));
   std::size_t end = fields.stride();
   std::vector<Attribute> extra;
   for (std::size_t i = 0; i < info.layout.attributes().size(); ++i) {
@@ -85,33 +86,32 @@ LasTarget modernTarget(const StoreInfo& info, int pointFormat) {
     if (attribute.isInternal()) continue;
     const int place = fields.find(attribute.name);
     if (place >= 0 && sameType(attribute, fields.attributes()[static_cast<std::size_t>(place)])) {
-      target.copies.push_back(
-          {info.layout.offset(i), fields.offset(static_cast<std::size_t>(place)), attribute.bytes()});
+      out.copies.push_back({info.layout.offset(i), fields.offset(static_cast<std::size_t>(place)), attribute.bytes()});
     } else if (angle >= 0 && attribute.name == attribute::kScanAngleRank && attribute.type == ScalarType::i8) {
-      target.rankAt = static_cast<int>(info.layout.offset(i));
+      out.rankAt = static_cast<int>(info.layout.offset(i));
     } else {
-      target.copies.push_back({info.layout.offset(i), end, attribute.bytes()});
+      out.copies.push_back({info.layout.offset(i), end, attribute.bytes()});
       end += attribute.bytes();
       extra.push_back(attribute);
     }
   }
-  target.format.recordBytes = static_cast<std::uint16_t>(target.format.recordBytes + (end - fields.stride()));
+  out.format.recordBytes = static_cast<std::uint16_t>(out.format.recordBytes + (end - fields.stride()));
 
-  if (info.las) target.meta = *info.las;
-  target.meta.versionMinor = 4;
-  target.meta.pointFormat = static_cast<std::uint8_t>(target.format.pointFormat);
-  target.meta.recordBytes = target.format.recordBytes;
-  std::erase_if(target.meta.vlrs, [](const LasMeta::Vlr& vlr) { return isExtraBytes(vlr) || isCrs(vlr); });
-  target.meta.globalEncoding = static_cast<std::uint16_t>(target.meta.globalEncoding & ~kWktBit);
+  if (info.las) out.meta = *info.las;
+  out.meta.versionMinor = 4;
+  out.meta.pointFormat = static_cast<std::uint8_t>(out.format.pointFormat);
+  out.meta.recordBytes = out.format.recordBytes;
+  std::erase_if(out.meta.vlrs, [](const LasMeta::Vlr& vlr) { return isExtraBytes(vlr) || isCrs(vlr); });
+  out.meta.globalEncoding = static_cast<std::uint16_t>(out.meta.globalEncoding & ~kWktBit);
   if (!info.crs.empty()) {
-    target.meta.vlrs.push_back(encodeCrs(info.crs));
-    if (!info.crs.starts_with("EPSG:")) target.meta.globalEncoding |= kWktBit;
+    out.meta.vlrs.push_back(encodeCrs(info.crs));
+    if (!info.crs.starts_with("EPSG:")) out.meta.globalEncoding |= kWktBit;
   }
-  if (!extra.empty()) target.meta.vlrs.push_back(encodeExtraBytes(extra));
-  return target;
+  if (!extra.empty()) out.meta.vlrs.push_back(encodeExtraBytes(extra));
+  return out;
 }
 
-/// Smallest and largest integer of the store's grid along an axis.
+/// The smallest and the largest integer of the points along an axis of the store's grid.
 struct Reach {
   double first, last;
 };
@@ -121,9 +121,10 @@ Reach reachOf(const StoreInfo& info, const Box& bounds, int axis) {
   return {std::round((bounds.min[axis] - offset) / scale), std::round((bounds.max[axis] - offset) / scale)};
 }
 
-/// True when the source's grid is the store's, shifted by whole steps, and holds all points. The store of a single
-/// source may have finer steps than it (docs/decisions/0001-integer-grid.md): all points lie on the coarser grid then.
-bool takeSourceGrid(const StoreInfo& info, const Box& bounds, LasTarget& target) {
+/// Takes the source's grid, if it is the store's grid shifted by whole steps and its integers hold all points. The
+/// store of a single source may have finer steps than the source (docs/decisions/0001-integer-grid.md); all points lie
+/// on the coarser grid then.
+bool takeSourceGrid(const StoreInfo& info, const Box& bounds, LasExportLayout& out) {
   if (!info.las) return false;
   for (int axis = 0; axis < 3; ++axis) {
     const double ratio = info.las->scale[axis] / info.grid.scale[axis];
@@ -136,17 +137,17 @@ bool takeSourceGrid(const StoreInfo& info, const Box& bounds, LasTarget& target)
     const Reach reach = reachOf(info, bounds, axis);
     if ((reach.first + shift) / divide < kSmallestInteger || (reach.last + shift) / divide > kLargestInteger)
       return false;
-    target.shift[axis] = static_cast<std::int64_t>(shift);
-    target.divide[axis] = static_cast<std::int64_t>(divide);
+    out.shift[axis] = static_cast<std::int64_t>(shift);
+    out.divide[axis] = static_cast<std::int64_t>(divide);
   }
-  target.meta.scale = info.las->scale;
-  target.meta.offset = info.las->offset;
+  out.meta.scale = info.las->scale;
+  out.meta.offset = info.las->offset;
   return true;
 }
 
-/// The store's own grid, its zero moved where the integers would not fit 32 bits.
-void takeStoreGrid(const std::string& file, const StoreInfo& info, const Box& bounds, LasTarget& target) {
-  target.meta.scale = info.grid.scale;
+/// Takes the store's own grid, and moves its zero when the integers would not fit 32 bits.
+void takeStoreGrid(const std::string& file, const StoreInfo& info, const Box& bounds, LasExportLayout& out) {
+  out.meta.scale = info.grid.scale;
   for (int axis = 0; axis < 3; ++axis) {
     const Reach reach = reachOf(info, bounds, axis);
     double shift = 0.0;
@@ -156,35 +157,35 @@ void takeStoreGrid(const std::string& file, const StoreInfo& info, const Box& bo
       throw Error(file, "the points span too many steps for LAS along axis " + std::string(1, "xyz"[axis]) +
                             ", found " + std::to_string(reach.last - reach.first) + " steps of " +
                             std::to_string(info.grid.scale[axis]) + " (expected less than 2^32)");
-    target.shift[axis] = static_cast<std::int64_t>(shift);
-    target.divide[axis] = 1;
-    target.meta.offset[axis] = info.grid.offset[axis] - shift * info.grid.scale[axis];
+    out.shift[axis] = static_cast<std::int64_t>(shift);
+    out.divide[axis] = 1;
+    out.meta.offset[axis] = info.grid.offset[axis] - shift * info.grid.scale[axis];
   }
 }
 
 }  // namespace
 
-LasTarget chooseLasTarget(const std::string& file, const StoreInfo& info, std::uint64_t points, const Box& bounds,
-                          std::optional<int> pointFormat) {
+LasExportLayout chooseLasExportLayout(const std::string& file, const StoreInfo& info, const ExportedPoints& points,
+                                      std::optional<int> pointFormat) {
   if (pointFormat && !fitsBitFields(info, *pointFormat))
     throw Error(file, "the points do not fit point format " + std::to_string(*pointFormat) +
                           ", found a class above 31, a return number above 7 or flags (expected formats 6 to 8)");
-  std::optional<LasTarget> source;
-  if (!pointFormat) source = sourceTarget(info, points);
-  LasTarget target = source ? std::move(*source) : modernTarget(info, pointFormat.value_or(modernFormat(info)));
-  if (lasFormatBytes(target.format.pointFormat) > target.format.recordBytes)
+  std::optional<LasExportLayout> source;
+  if (!pointFormat) source = sourceLayout(info, points.count);
+  LasExportLayout out = source ? std::move(*source) : modernLayout(info, pointFormat.value_or(modernFormat(info)));
+  if (lasFormatBytes(out.format.pointFormat) > out.format.recordBytes)
     throw Error(file,
                 "the attributes are too large for a LAS record, found more than 65535 bytes (expected at most 65535)");
-  if (!takeSourceGrid(info, bounds, target)) takeStoreGrid(file, info, bounds, target);
-  if (!info.program.empty()) target.meta.generatingSoftware = info.program;
+  if (!takeSourceGrid(info, points.bounds, out)) takeStoreGrid(file, info, points.bounds, out);
+  if (!info.program.empty()) out.meta.generatingSoftware = info.program;
   std::size_t next = 0;
-  target.sameRecords = target.rankAt < 0 && info.layout.stride() == lasStride(target.format) &&
-                       std::all_of(target.copies.begin(), target.copies.end(), [&next](const LasTarget::Copy& copy) {
-                         const bool inPlace = copy.from == next && copy.to == next;
-                         next += copy.bytes;
-                         return inPlace;
-                       });
-  return target;
+  out.sameRecords = out.rankAt < 0 && info.layout.stride() == lasStride(out.format) &&
+                    std::all_of(out.copies.begin(), out.copies.end(), [&next](const LasExportLayout::Copy& copy) {
+                      const bool inPlace = copy.from == next && copy.to == next;
+                      next += copy.bytes;
+                      return inPlace;
+                    });
+  return out;
 }
 
 }  // namespace strata
