@@ -98,7 +98,7 @@ DecodeResult NodeDecoder::decode(const LoadRequest& request, std::span<const std
   } else {
     startNode(record, bytes, out);
   }
-  out.ends = decodeForDrawing(record, store_->info(), out.head, from, bytes, scratch_, out);
+  out.ends = decodeForDrawing(record, store_->info(), {out.head, from, bytes}, scratch_, out);
   if (out.position[0].empty() && record.pointCount > 0) return DecodeResult::tooFewBytes;
   keepRest(record, request, bytes.subspan(out.ends.whole - from), out);
   if (withOccluders && out.occluding.cellSide == 0.0)  // they come from the leading bits alone: once is enough

@@ -8,10 +8,11 @@ namespace strata {
 
 static_assert(std::endian::native == std::endian::little, "stores are little-endian and read in place");
 
-/// Reading and writing touch up to this many bytes behind the last field.
+/// Reading and writing touch up to this many bytes behind the last field, which must exist.
 inline constexpr std::size_t kBitSlack = 8;
 
-/// Writes fields of 0 to 57 bits, least significant bit first. The caller guarantees room and kBitSlack behind it.
+/// Writes fields of 0 to 57 bits, least significant bit first. The caller provides the room, and kBitSlack bytes behind
+/// it.
 class BitWriter {
  public:
   explicit BitWriter(std::byte* to) : to_(to) {}
@@ -24,7 +25,7 @@ class BitWriter {
     window_ = whole < 64 ? window_ >> whole : 0;
     bits_ &= 7;
   }
-  /// Pads with zeros to a whole byte; where the next one goes.
+  /// Pads with zeros to a whole byte, and returns the place of the next one.
   std::byte* finish() {
     if (bits_ > 0) {
       *to_++ = static_cast<std::byte>(window_);
@@ -40,7 +41,7 @@ class BitWriter {
   int bits_ = 0;
 };
 
-/// Reads fields of 0 to 57 bits. The caller guarantees kBitSlack readable bytes behind the last field.
+/// Reads fields of 0 to 57 bits. The caller provides kBitSlack readable bytes behind the last field.
 class BitReader {
  public:
   explicit BitReader(const std::byte* data) : data_(data) {}

@@ -14,12 +14,12 @@ static_assert((257u * kInverse257 & 0xffffu) == 1);
 using Words __attribute__((vector_size(16))) = std::uint32_t;
 using Bytes __attribute__((vector_size(16))) = std::uint8_t;
 
-/// Byte by byte, modulo 256.
+/// Adds byte by byte, modulo 256.
 Words addBytes(Words a, Words b) {
   return reinterpret_cast<Words>(reinterpret_cast<Bytes>(a) + reinterpret_cast<Bytes>(b));
 }
 
-/// Of red - green, green and blue - green in the three lower bytes.
+/// Colours from red - green, green and blue - green in the three lower bytes.
 Words coloursOf(Words differences) {
   const Words green = differences >> 8 & 255u;
   return addBytes(differences, green | green << 16) | 0xff000000u;
@@ -66,7 +66,7 @@ void ColourDecoder::read(std::span<std::uint32_t> out) {
   green_ += count;
   red_ += count;
   blue_ += count;
-  // Sums of differences, all three in each word, four words at a time.
+  // The differences are summed up four points at a time, all three channels of a point in one word.
   Words last{last_, last_, last_, last_};
   std::size_t i = 0;
   for (; i + 4 <= count; i += 4) {
@@ -89,7 +89,7 @@ void ColourDecoder::read(std::span<std::uint32_t> out) {
 std::uint16_t residualOf(ResidualUnit unit, std::uint16_t value, std::uint32_t colour, int shift) {
   const std::uint32_t v = value;
   if (unit == ResidualUnit::repeated) return static_cast<std::uint16_t>((v - 257u * colour) * kInverse257);
-  // Sign-extended by hand: a multiple of 256 modulo 2^16 divided by 256.
+  // The difference, a multiple of 256 modulo 2^16, is divided by 256 and sign-extended by hand.
   if (unit == ResidualUnit::upper) {
     const std::uint32_t difference = ((v >> 8) - colour) & 255u;
     return static_cast<std::uint16_t>(difference < 128 ? difference : difference | 0xff00u);

@@ -11,10 +11,10 @@
 namespace strata {
 namespace {
 
-/// Below this many bits a value, repeats may beat single values.
+/// Repeats may beat codes of single values when those have fewer bits than this on average.
 constexpr double kTryLz4Bits = 3.0;
 
-/// Four tables, so that a run of one value does not wait for its own counter.
+/// Counts in four tables, so that a run of one value does not wait for its own counter.
 HuffmanCode::Histogram histogramOf(std::span<const std::uint8_t> values) {
   std::array<HuffmanCode::Histogram, 4> part{};
   std::size_t i = 0;

@@ -16,7 +16,7 @@ using Shorts = Vector<std::uint16_t>;
 using Words = Vector<std::uint32_t>;
 using Longs = Vector<std::uint64_t>;
 
-/// The lower and the upper halves of two vectors, their values in turn.
+/// The values of the lower or the upper halves of two vectors in turn.
 Bytes lower(Bytes a, Bytes b) {
   return __builtin_shufflevector(a, b, 0, 16, 1, 17, 2, 18, 3, 19, 4, 20, 5, 21, 6, 22, 7, 23);
 }
@@ -30,8 +30,9 @@ Words upper(Words a, Words b) { return __builtin_shufflevector(a, b, 2, 6, 3, 7)
 Longs lower(Longs a, Longs b) { return __builtin_shufflevector(a, b, 0, 2); }
 Longs upper(Longs a, Longs b) { return __builtin_shufflevector(a, b, 1, 3); }
 
-/// A square of values: as many rows of a vector's length, `stride` values apart, become columns. Each round puts the
-/// vectors of the first and the second half in turn; after log2 of their number rows and columns have changed places.
+/// Transposes a square of values, whose rows are one vector long and `stride` values apart. Each round puts the vectors
+/// of the first and of the second half in turn; after log2 of their number of rounds, rows and columns have changed
+/// places.
 template <class T>
 void transpose(const T* from, std::size_t stride, T* const* to) {
   constexpr std::size_t kSide = kVectorBytes / sizeof(T);

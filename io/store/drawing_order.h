@@ -6,28 +6,31 @@
 
 namespace strata {
 
-/// The points of a level stand in Morton order; drawn, they come in 16 passes over that order, so that a prefix which
-/// ends inside a level is even too. Each pass falls in the middle of the widest gap that the ones before have left.
+/// The points of a level are stored in Morton order and drawn in 16 passes over that order, so that a prefix which ends
+/// inside a level is even too. Pass i takes every sixteenth point from number kPasses[i] on, the middle of the widest
+/// gap that the passes before it left.
 inline constexpr std::array<std::uint32_t, 16> kPasses{0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
 
-/// Takes the values of one level in stored order and puts them where they are drawn. T: unsigned, 1 to 8 bytes.
+/// Takes the values of one level in stored order and puts each at its place in drawing order. T is unsigned, 1 to 8
+/// bytes.
 template <class T>
 class LevelInterleaver {
  public:
-  /// `drawn` is where the level's values begin.
+  /// `drawn` has room for the `count` values of the level.
   LevelInterleaver(std::size_t count, T* drawn);
-  /// The next values; a multiple of 16, but for the level's last.
+  /// Takes the next values: a multiple of 16 of them, except at the end of the level.
   void put(std::span<const T> stored);
 
  private:
-  T* to_[kPasses.size()];  ///< by place in a group of 16
+  T* to_[kPasses.size()];  ///< for each place in a group of 16 where its next value goes
 };
 
-/// So many values are decoded at a time, so that they are still in the nearest cache when they are put in order.
+/// Values decoded at a time, few enough to be in the nearest cache still when they are put in order.
 inline constexpr std::size_t kTileValues = 512;
 
-/// Values of all points of a node into drawing order. `read(first, out)` gives the next ones in stored order, none of
-/// two levels at once. Without levels they are drawn as they are stored.
+/// Puts the values of all points of a node into drawing order. `read(first, out)` fills `out` with the values of the
+/// points from `first` on in stored order, which are all of one level. Without levels the stored order is the drawing
+/// order.
 template <class T, class Read>
 void toDrawingOrder(std::span<const std::uint32_t> levelEnds, std::span<T> drawn, Read&& read) {
   if (levelEnds.empty()) return read(std::size_t{0}, drawn);

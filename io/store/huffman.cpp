@@ -77,14 +77,14 @@ void visitCodes(const std::array<std::uint8_t, 256>& lengths, Visit&& visit) {
 }
 
 /// What 11 bits of a stream begin with: one value, or two where both codes lie within.
-struct Entry {
+struct Lookup {
   std::uint16_t values;  ///< the first one low
   std::uint8_t bits;     ///< of both
   std::uint8_t count;
 };
-static_assert(sizeof(Entry) == 4);
+static_assert(sizeof(Lookup) == 4);
 struct Table {
-  std::array<Entry, kTableSize> entries;
+  std::array<Lookup, kTableSize> entries;
   std::array<std::uint8_t, 256> lengths;
 };
 
@@ -145,7 +145,7 @@ class Stream {
     window_ = (word | kTop) >> (used & 7);
   }
   void next(const Table& table) {
-    const Entry& entry = table.entries[window_ & (kTableSize - 1)];
+    const Lookup& entry = table.entries[window_ & (kTableSize - 1)];
     const std::uint8_t count = entry.count;
     window_ >>= entry.bits;
     std::memcpy(to_, &entry.values, sizeof entry.values);

@@ -7,7 +7,7 @@
 
 namespace strata {
 
-/// What a LAS or LAZ file says beyond its points; kept so that an export gives it back.
+/// The contents of a LAS or LAZ file beyond its points. A store keeps them so that an export gives them back.
 struct LasMeta {
   struct Vlr {
     std::string userId;

@@ -10,20 +10,20 @@
 
 namespace strata {
 
-/// The points of one node in full: what the converter writes and an export reads back.
+/// All that a store keeps of the points of one node. The converter writes it and an export reads it back.
 struct NodePoints {
   std::vector<std::int64_t> grid[3];  ///< integers of StoreGrid
   std::vector<std::byte> attributes;  ///< records of StoreInfo::layout
-  /// Points up to and including each level of the level order, the last one all. The codec sorts inside a level, since
-  /// sorted points take fewer bytes. Empty: the points keep the order they have.
+  /// For each level of the level order the number of points up to its end; the last is count(). The codec sorts the
+  /// points inside a level, since sorted points take fewer bytes. Empty when the points are to keep their order.
   std::vector<std::uint32_t> levels;
-  /// R | G << 8 | B << 16 of what is drawn where that is not the point's own colour. Empty: its own.
+  /// The colours that the points are drawn with, as R | G << 8 | B << 16. Empty when each is drawn with its own.
   std::vector<std::uint32_t> drawColours;
 
   std::size_t count() const { return grid[0].size(); }
 };
 
-/// A node's payload and the part of its record that describes it (offset is the writer's to fill in).
+/// A node's payload, and the fields of its NodeRecord that describe it. The writer fills in the offset.
 struct EncodedNode {
   std::vector<std::byte> payload;
   std::uint32_t headBytes = 0;
@@ -31,7 +31,7 @@ struct EncodedNode {
   std::uint32_t drawBytes[3] = {0, 0, 0};
 };
 
-/// Working memory of encodeNode, worth keeping from node to node. One thread at a time.
+/// Working memory of encodeNode(), worth keeping from node to node. It serves one thread at a time.
 class EncodeScratch {
  public:
   EncodeScratch();
@@ -44,22 +44,23 @@ class EncodeScratch {
   std::unique_ptr<Buffers> buffers_;
 };
 
-/// Packs points into planes as docs/format.md says. Lossless but for the order inside a level, which becomes one of 16
-/// interleaved passes over the level's Morton order (node_payload.h), so that prefixes inside a level are even too.
+/// Packs points into planes (node_payload.h and docs/format.md). Only the order of the points inside a level is lost:
+/// they come back in 16 interleaved passes over the level's Morton order (drawing_order.h), so that a prefix which ends
+/// inside a level is even too. Throws Error for a node of more than kMaxNodePoints points or 4 GB.
 EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info, EncodeScratch& scratch);
 EncodedNode encodeNode(const NodePoints& points, const StoreInfo& info);
 
-/// How many leading bytes of the payload a drawing at `precision` has to fetch.
+/// The number of leading payload bytes that drawing at `precision` needs.
 std::uint32_t drawBytes(const NodeRecord& record, Precision precision);
 
-/// Where in the payload the planes that drawings look at end; 0 for those that the node does not have.
+/// Ends of the planes that drawing uses, as offsets in the payload; 0 for planes that the node does not have.
 struct PlaneEnds {
   std::uint32_t position[3] = {0, 0, 0};
   std::uint32_t colour = 0, intensity = 0, classification = 0, returnNumber = 0, normal = 0;
-  std::uint32_t whole = 0;  ///< where the last plane ends that has been at hand from its beginning to its end
+  std::uint32_t whole = 0;  ///< end of the last plane that was in memory whole, and so were all planes before it
 };
 
-/// Working memory of decodeForDrawing, worth keeping from node to node. One thread at a time.
+/// Working memory of decodeForDrawing(), worth keeping from node to node. It serves one thread at a time.
 class DecodeScratch {
  public:
   DecodeScratch();
@@ -72,23 +73,30 @@ class DecodeScratch {
   std::unique_ptr<Buffers> buffers_;
 };
 
-/// Decodes all planes for drawing that lie whole in `bytes`, which stand in the payload from `from` on, into `out`,
-/// which holds what the bytes before them gave. `from` is 0 or PlaneEnds::whole of those before; `head` begins with the
-/// payload's head. Where `from` is 0, `out` is replaced (the memory it holds is used again), and left without points
-/// when the bytes end too early for any. Trusts nothing: throws Error (`points.bin: node r042: block checksum
-/// mismatch`) for anything that does not fit; `out` then holds nothing of use.
-PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
-                           std::uint32_t from, std::span<const std::byte> bytes, DecodeScratch& scratch, NodeData& out);
+/// The bytes of a payload that are in memory: its head, and the range that starts at `from`.
+struct PayloadPart {
+  std::span<const std::byte> head;  ///< begins with the payload's head
+  std::uint32_t from = 0;           ///< 0, or PlaneEnds::whole of the part before
+  std::span<const std::byte> bytes;
+};
 
-/// The same of a payload's first bytes, drawBytes(record, precision) or more: `out` has as many position planes as the
-/// precision asks for, zeros where nothing is stored. Throws too where they are not at hand.
+/// Decodes the planes that drawing uses and that lie whole in `part`, whose length was chosen by the caller. A part
+/// that starts at 0 replaces `out`, whose memory is used again, and leaves it without points when it ends too early for
+/// any; a later part adds its planes to those of the parts before. No byte is trusted: throws Error (`points.bin: node
+/// r042: block checksum mismatch`) for everything that does not fit, and leaves `out` in no useful state.
+PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, const PayloadPart& part,
+                           DecodeScratch& scratch, NodeData& out);
+
+/// Does the same with the first drawBytes(record, precision) bytes of a payload, or more. `out` gets all the position
+/// planes of the precision, filled with 0 where the node stores nothing. Throws Error when one of them is not in
+/// memory.
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
                       Precision precision, NodeData& out);
 
-/// Decodes everything, in drawing order and without drawColours. Throws Error as above.
+/// Decodes a whole payload. The points are in drawing order, and drawColours are empty. Throws Error as above.
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload);
 
-/// Reads from the store's points and decodes.
+/// Read a node from the store's points and decode it.
 void readForDrawing(const Store& store, std::uint32_t nodeIndex, Precision precision, NodeData& out);
 NodePoints readAll(const Store& store, std::uint32_t nodeIndex);
 

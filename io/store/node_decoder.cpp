@@ -15,7 +15,7 @@ DecodeScratch::DecodeScratch(DecodeScratch&&) noexcept = default;
 
 namespace {
 
-/// The plane of an attribute; one that no payload has where the layout has no such attribute.
+/// The id of an attribute's plane; an id that no payload has when the layout has no such attribute.
 std::uint16_t planeOf(const StoreInfo& info, std::string_view name) {
   const int index = info.layout.find(name);
   return index < 0 ? std::uint16_t{0xffff} : static_cast<std::uint16_t>(kFirstAttributePlane + index);
@@ -35,7 +35,7 @@ void decodePositions(PayloadReader& payload, int plane, std::vector<std::uint32_
                  [&](std::size_t first, std::span<Lanes> lanes) { fields.read(stored, first, lanes); });
 }
 
-/// One-component attribute.
+/// Decodes an attribute of one component.
 template <class T>
 void decodeValues(PayloadReader& payload, std::uint16_t id, std::vector<T>& out) {
   const PayloadReader::Plane plane = payload.plane(id);
@@ -52,7 +52,8 @@ void decodeValues(PayloadReader& payload, std::uint16_t id, std::vector<T>& out)
   if (!rest.empty()) payload.fail("attribute does not decode");
 }
 
-/// All batches have the node's box: each holds whole passes over it, so that a tighter one would hardly be smaller.
+/// Gives all batches the box of the node. Each holds whole passes over the node, so its own box would hardly be
+/// smaller.
 void describeBatches(const PayloadHead& head, const StoreInfo& info, NodeData& out) {
   const Box cube = nodeCube(out.key, info.rootCube());
   out.origin = cube.min;
@@ -70,7 +71,7 @@ void describeBatches(const PayloadHead& head, const StoreInfo& info, NodeData& o
   }
 }
 
-/// Of floats, or of what octahedral codes say.
+/// Decodes normals that are stored as floats or as octahedral codes.
 void decodeNormals(PayloadReader& payload, const StoreInfo& info, std::vector<std::uint32_t>& out) {
   const auto decode = [&](std::string_view name, auto& values) {
     const int index = info.layout.find(name);
@@ -91,7 +92,7 @@ void decodeNormals(PayloadReader& payload, const StoreInfo& info, std::vector<st
   }
 }
 
-/// A payload without one of the planes that every node of such a store has is damaged.
+/// Throws unless the payload has the planes that every node of such a store has.
 void requirePlanes(const PayloadReader& payload, const StoreInfo& info) {
   const auto require = [&payload](std::uint16_t id) {
     if (payload.endOf(id) == 0) payload.fail("plane " + std::to_string(id) + " is missing");
@@ -121,24 +122,24 @@ std::uint32_t drawBytes(const NodeRecord& record, Precision precision) {
   return record.drawBytes[static_cast<int>(precision) - 1];
 }
 
-PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> head,
-                           std::uint32_t from, std::span<const std::byte> bytes, DecodeScratch& scratch,
-                           NodeData& out) {
-  PayloadReader payload(record, head, from, bytes, scratch.buffers());
+PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, const PayloadPart& part,
+                           DecodeScratch& scratch, NodeData& out) {
+  PayloadReader payload(record, part, scratch.buffers());
   requirePlanes(payload, info);
   const PlaneEnds ends = endsOf(payload, info);
-  const bool isFirst = from == 0;
+  const bool isFirst = part.from == 0;
   if (isFirst) {
     out.key = NodeKey{record.key};
     out.spacing = record.spacing;
     describeBatches(payload.head(), info, out);
-    if (bytes.size() >= ends.position[0])
-      decodePositions(payload, 0, out.position[0]);  // even where it takes no bytes
+    if (part.bytes.size() >= ends.position[0])
+      decodePositions(payload, 0, out.position[0]);  // also a plane of no bytes
     else
       out.position[0].clear();
   }
   if (out.position[0].size() != payload.pointCount() && !isFirst) payload.fail("not the points that were read before");
-  /// What is not at hand stays as it was read before. Vectors keep their size, since one that grows is filled first.
+  // Planes that are not in this part stay as a part before left them. Vectors keep their size, since growing one fills
+  // it.
   const auto decode = [&](std::uint16_t id, auto& values, auto&& decodePlane) {
     if (payload.holds(id))
       decodePlane(values);
@@ -164,7 +165,7 @@ PlaneEnds decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std:
 void decodeForDrawing(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> payload,
                       Precision precision, NodeData& out) {
   DecodeScratch scratch;
-  const PlaneEnds ends = decodeForDrawing(record, info, payload, 0, payload, scratch, out);
+  const PlaneEnds ends = decodeForDrawing(record, info, {payload, 0, payload}, scratch, out);
   for (int plane = 0; plane < static_cast<int>(precision); ++plane) {
     if (payload.size() < ends.position[plane])
       throw Error("points.bin", "node " + NodeKey{record.key}.text() + ": truncated plane");

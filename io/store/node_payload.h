@@ -9,17 +9,19 @@
 
 namespace strata {
 
-/// The on-disk parts of a node's payload (docs/format.md, "Payload"). Shared by the encoder and the decoder.
+/// The bytes of a node in points.bin are defined here, for the encoder and the decoder, and described in
+/// docs/format.md, "Payload".
 
 #pragma pack(push, 1)
-/// Followed by u32[levelCount], the points up to and including each level, then by the directory of planes.
+/// A payload begins with this head. Then come a u32 for each level, the number of points up to its end, a PayloadPlane
+/// for each plane, and the planes.
 struct PayloadHead {
   std::uint32_t pointCount;
-  std::uint16_t levelCount;  ///< 0: stored in drawing order
+  std::uint16_t levelCount;  ///< 0 when the points are stored in drawing order
   std::uint16_t planeCount;
   std::int64_t min[3];    ///< grid integers
-  std::uint8_t bits[3];   ///< of (grid - min), 0 to 52 an axis
-  std::uint8_t start[3];  ///< octree level from which on an axis is halved: long axes first, so that cells are cubes
+  std::uint8_t bits[3];   ///< of (grid - min) on each axis, 0 to 52
+  std::uint8_t start[3];  ///< octree level from which on each axis is halved: long axes first, so that cells are cubes
   std::uint16_t reserved;
 };
 struct PayloadPlane {
@@ -31,37 +33,37 @@ struct PayloadPlane {
 #pragma pack(pop)
 static_assert(sizeof(PayloadHead) == 40 && sizeof(PayloadPlane) == 16);
 
-/// Only this many bits of a coordinate can be packed; a store's grid never needs more (cubeBits <= 52).
+/// The most bits of a coordinate. A store's grid needs no more, since cubeBits is at most 52.
 inline constexpr int kMaxCoordinateBits = 52;
-/// Levels of the octree over leading bits; an axis that starts at this one takes no part in it.
+/// Levels of the octree over the leading bits. An axis that starts at this level takes no part in it.
 inline constexpr int kOctreeLevels = 10;
-/// Most points of a node: columns have 24-bit lengths.
+/// The most points of a node, since the length of a column has 24 bits.
 inline constexpr std::uint32_t kMaxNodePoints = (1u << 24) - 1;
 
 enum PlaneId : std::uint16_t {
-  kPosition10 = 0,      ///< the 10 leading bits an axis
+  kPosition10 = 0,      ///< the 10 leading bits of each axis
   kPosition20 = 1,      ///< the next 10
-  kPosition30 = 2,      ///< all that remain
+  kPosition30 = 2,      ///< all bits that remain
   kColour = 3,          ///< 8-bit red, green, blue
-  kColourResidual = 4,  ///< what the drawn colour leaves of rgb
+  kColourResidual = 4,  ///< rgb without what the drawn colour tells
   kFirstAttributePlane = 16,
 };
 
 enum PlaneEncoding : std::uint16_t {
-  kConstant = 0,  ///< one element, the same for all points
+  kConstant = 0,  ///< one element, equal for all points
   kPacked = 1,    ///< bit fields of positions, io/store/bit_packing.h
   kOctree = 2,    ///< leading bits of sorted positions, io/store/position_codec.h
   kColumns = 3,   ///< columns of bytes, io/store/column_codec.h
 };
 
-/// Bits of an axis with `bits` that stand in position plane 0, 1 or 2.
+/// Of the `bits` bits of an axis, the number that lie in position plane 0, 1 or 2.
 inline int planeBits(int bits, int plane) {
   if (plane == 0) return bits < 10 ? bits : 10;
   if (plane == 1) return bits < 10 ? 0 : bits < 20 ? bits - 10 : 10;
   return bits < 20 ? 0 : bits - 20;
 }
 
-/// Widths of the three fields of a point in a position plane.
+/// Bits of a point on each axis in a position plane.
 struct FieldWidths {
   int axis[3];
   int sum() const { return axis[0] + axis[1] + axis[2]; }
@@ -69,6 +71,7 @@ struct FieldWidths {
 inline FieldWidths planeWidths(const PayloadHead& head, int plane) {
   return {planeBits(head.bits[0], plane), planeBits(head.bits[1], plane), planeBits(head.bits[2], plane)};
 }
+/// Bytes of `count` points with `bitsAPoint` bits each.
 inline std::size_t packedBytes(std::size_t count, int bitsAPoint) {
   return (count * static_cast<std::size_t>(bitsAPoint) + 7) / 8;
 }

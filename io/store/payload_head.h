@@ -9,14 +9,15 @@
 
 namespace strata {
 
-/// Head, levels and directory of a node's payload, checked against each other and against the record.
+/// The head of a node's payload with its levels and its directory of planes, checked against each other and against the
+/// record.
 struct ParsedHead {
   PayloadHead head;
   std::vector<std::uint32_t> levelEnds;
   std::vector<PayloadPlane> planes;
 };
 
-/// `payload` starts with the head; more may follow. Throws Error (`points.bin: node r042: ...`) for what does not fit.
+/// Decodes the head at the start of `payload`. Throws Error (`points.bin: node r042: ...`) when it does not fit.
 ParsedHead parseHead(const NodeRecord& record, std::span<const std::byte> payload);
 
 }  // namespace strata

@@ -11,9 +11,12 @@
 
 namespace strata {
 
-PayloadReader::PayloadReader(const NodeRecord& record, std::span<const std::byte> head, std::size_t from,
-                             std::span<const std::byte> part, DecodeScratch::Buffers& buffers)
-    : record_(record), payload_(part), from_(from), parsed_(parseHead(record, head)), buffers_(buffers) {}
+PayloadReader::PayloadReader(const NodeRecord& record, const PayloadPart& part, DecodeScratch::Buffers& buffers)
+    : record_(record),
+      payload_(part.bytes),
+      from_(part.from),
+      parsed_(parseHead(record, part.head)),
+      buffers_(buffers) {}
 
 void PayloadReader::fail(const std::string& what) const {
   throw Error("points.bin", "node " + NodeKey{record_.key}.text() + ": " + what);

@@ -12,7 +12,7 @@ namespace {
 constexpr int kDigitBits = 10;
 constexpr int kKeyBits = 30;
 constexpr int kKeyAt = 32;  // in a pair: key above, index below
-/// Fewer are sorted by comparing.
+/// Levels of fewer points are sorted by comparing.
 constexpr std::size_t kLeastForRadix = 512;
 
 void radixSort(std::span<std::uint64_t> pairs, std::span<std::uint64_t> spare) {

@@ -8,7 +8,7 @@
 namespace strata {
 namespace {
 
-/// Grid integers in drawing order.
+/// Decodes the grid integers in drawing order.
 void decodePositions(PayloadReader& payload, std::vector<std::int64_t> (&grid)[3]) {
   const PayloadHead& head = payload.head();
   const std::size_t count = payload.pointCount();
@@ -45,7 +45,7 @@ void decodePositions(PayloadReader& payload, std::vector<std::int64_t> (&grid)[3
   }
 }
 
-/// rgb of every record from its drawn colour and the residual.
+/// Sets rgb of every record from its drawn colour and the residual.
 void decodeRgb(PayloadReader& payload, const StoreInfo& info, std::size_t offset, std::vector<std::byte>& records) {
   const std::size_t count = payload.pointCount(), stride = info.layout.stride();
   const int ownShift = info.layout.find(attribute::kColourShift);
@@ -78,7 +78,7 @@ void decodeRgb(PayloadReader& payload, const StoreInfo& info, std::size_t offset
 
 NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<const std::byte> bytes) {
   DecodeScratch scratch;
-  PayloadReader payload(record, bytes, 0, bytes, scratch.buffers());
+  PayloadReader payload(record, {bytes, 0, bytes}, scratch.buffers());
   const std::size_t count = payload.pointCount();
   NodePoints points;
   decodePositions(payload, points.grid);
@@ -90,7 +90,7 @@ NodePoints decodeAll(const NodeRecord& record, const StoreInfo& info, std::span<
     if (layout.attributes()[a].name != attribute::kRgb)
       decodeAttribute(payload, static_cast<int>(a), layout.attributes()[a], layout.stride(),
                       points.attributes.data() + layout.offset(a));
-  // Last, since a point's colour shift may be an attribute.
+  // rgb comes last, since the colour shift of a point may be an attribute.
   if (const int rgb = layout.find(attribute::kRgb); rgb >= 0)
     decodeRgb(payload, info, layout.offset(static_cast<std::size_t>(rgb)), points.attributes);
   return points;

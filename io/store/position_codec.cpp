@@ -94,9 +94,9 @@ LaneFields::LaneFields(const FieldWidths& widths, const int (&left)[3]) : stride
   }
 }
 
-template <class Place>
+template <class PlaceFields>
 inline __attribute__((always_inline)) void LaneFields::readEach(const std::byte* fields, std::size_t first,
-                                                                std::span<Lanes> out, Place&& place) const {
+                                                                std::span<Lanes> out, PlaceFields&& place) const {
   const auto stride = static_cast<std::size_t>(stride_);
   std::size_t bit = first * stride;
   for (Lanes& lanes : out) {

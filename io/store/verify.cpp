@@ -10,7 +10,8 @@
 namespace strata {
 namespace {
 
-/// Float half-axes and the sums that made the contour may be this much off, as a share of the coordinates' size.
+/// The contour's half-axes are floats and its centre is a sum, so points may lie outside by this share of their
+/// distance.
 constexpr double kContourSlack = 1e-6;
 
 void checkPoints(const NodeRecord& record, const NodePoints& points, const StoreInfo& info) {
@@ -33,7 +34,7 @@ void checkPoints(const NodeRecord& record, const NodePoints& points, const Store
   }
 }
 
-/// Payloads must follow each other without gaps, so that every byte is under some checksum.
+/// Payloads must follow each other without gaps, so that a checksum covers every byte.
 void checkCoverage(const Store& store, VerifyReport& report) {
   std::vector<const NodeRecord*> byOffset;
   for (const NodeRecord& record : store.hierarchy().nodes) byOffset.push_back(&record);

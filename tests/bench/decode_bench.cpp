@@ -205,7 +205,7 @@ void addStages(const Sample& sample) {
     const std::string name = "all for drawing, " + std::to_string(10 * static_cast<int>(precision)) + " bits";
     add(name.c_str(), [&info, drawn, scratch, precision](const Node& node) {
       const std::span<const std::byte> leading = std::span(node.payload).first(drawBytes(node.record, precision));
-      decodeForDrawing(node.record, info, leading, 0, leading, *scratch, *drawn);
+      decodeForDrawing(node.record, info, {leading, 0, leading}, *scratch, *drawn);
       return leading.size();
     });
   }

@@ -164,7 +164,7 @@ void indoors(const std::string& storePath, int views) {
   const Store store(storePath);
   const Box bounds = store.info().bounds;
   const std::unique_ptr<synthetic::ScannerScan> scan = synthetic::makeRoom(store.info().points, 1);
-  const glm::dvec3 origin = scan->frame().origin;
+  const glm::dvec3 origin = scan->extent().origin;
   std::mt19937_64 engine(5);
   const auto random = [&engine](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);

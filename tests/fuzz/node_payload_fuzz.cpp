@@ -42,9 +42,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     strata::DecodeScratch scratch;
     try {
       const std::span<const std::byte> all(payload);
-      const strata::PlaneEnds ends = strata::decodeForDrawing(record, info, all, 0, all.first(bytes), scratch, drawn);
+      const strata::PlaneEnds ends = strata::decodeForDrawing(record, info, {all, 0, all.first(bytes)}, scratch, drawn);
       if (!drawn.position[0].empty() && ends.whole <= bytes)
-        strata::decodeForDrawing(record, info, all, ends.whole, all.subspan(ends.whole), scratch, drawn);
+        strata::decodeForDrawing(record, info, {all, ends.whole, all.subspan(ends.whole)}, scratch, drawn);
     } catch (const strata::Error&) {
     }
   }

@@ -64,7 +64,7 @@ const Scan& scanOf(const std::string& name) {
 /// From a place where nothing stands, in any direction that people look.
 View randomView(const Scan& scan, Random& random) {
   const Box bounds = scan.store->info().bounds;
-  const glm::dvec3 origin = scan.truth->frame().origin;
+  const glm::dvec3 origin = scan.truth->extent().origin;
   View view;
   do {
     view.eye = bounds.min + bounds.size() * glm::dvec3(random.in(0.15, 0.85), random.in(0.15, 0.85), 0.0);
@@ -162,7 +162,7 @@ bool isSeen(const Scan& scan, const View& view, const Projection& p, const glm::
     if (direction[axis] == 0.0f) direction[axis] = 1e-7f;
   constexpr float kOwnSurface = 0.05f;  // noise and rounding: what stops the ray there is the point itself
   synthetic::Hit hit;
-  const synthetic::Ray ray(glm::vec3(view.eye - scan.truth->frame().origin), direction, 1);
+  const synthetic::Ray ray(glm::vec3(view.eye - scan.truth->extent().origin), direction, 1);
   return !scan.truth->scene().trace(ray, distance, hit) || hit.t > distance - kOwnSurface;
 }
 

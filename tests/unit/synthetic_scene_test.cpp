@@ -80,7 +80,7 @@ TEST(SyntheticScene, HitsRoofsAndConesWhereTheirFormulasSay) {
 /// grazing angle.
 void expectNothingHidden(const ScannerScan& scan, std::uint64_t step) {
   std::uint64_t hidden = 0, checked = 0;
-  SyntheticPoint point;
+  ShapePoint point;
   for (std::uint64_t i = 0; i < kPoints; i += step) {
     scan.generate(i, {&point, 1});
     const glm::vec3 eye = scan.stations()[scan.stationOf(i)].position;
@@ -108,7 +108,7 @@ TEST(SyntheticRoom, ShowsNoPointThatItsScannerCannotSee) { expectNothingHidden(*
 /// proportional to the rings' elevations: the law of Station, integrated.
 TEST(SyntheticCity, ThinsOutOnTheGroundAsAnEvenMirrorDoes) {
   const auto scan = makeCity(kPoints, 1);
-  std::vector<SyntheticPoint> points(kPoints);
+  std::vector<ShapePoint> points(kPoints);
   scan->generate(0, points);
   std::size_t checked = 0;
   for (std::size_t s = 0; s < scan->stations().size(); ++s) {
@@ -141,7 +141,7 @@ TEST(SyntheticCity, ThinsOutOnTheGroundAsAnEvenMirrorDoes) {
 TEST(SyntheticCity, GrowsWithThePoints) {
   EXPECT_GE(makeCity(1'000'000, 1)->stations().size(), 16u);
   EXPECT_GT(makeCity(100'000'000, 1)->stations().size(), makeCity(1'000'000, 1)->stations().size());
-  EXPECT_GT(makeCity(100'000'000, 1)->frame().max.x, makeCity(1'000'000, 1)->frame().max.x);
+  EXPECT_GT(makeCity(100'000'000, 1)->extent().max.x, makeCity(1'000'000, 1)->extent().max.x);
 }
 
 TEST(SyntheticRoom, HasScannersInEveryRoomUnderItsCeiling) {
@@ -163,8 +163,8 @@ TEST(SyntheticRoom, LosesNoRayThroughItsWalls) {
     Hit hit;
     ASSERT_TRUE(scan->scene().trace(Ray(station.position, direction, random.bits()), 80.0f, hit));
     const glm::dvec3 at = glm::dvec3(station.position + direction * hit.t);
-    ASSERT_TRUE(glm::all(glm::lessThanEqual(scan->frame().min, at)) &&
-                glm::all(glm::lessThanEqual(at, scan->frame().max)));
+    ASSERT_TRUE(glm::all(glm::lessThanEqual(scan->extent().min, at)) &&
+                glm::all(glm::lessThanEqual(at, scan->extent().max)));
   }
 }
 
