@@ -23,9 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using OpenFunction = std::unique_ptr<PointSource> (*)(const std::string& path, const SourceOptions& options);
 
+/// A format of scans that can be read. A new one is a row of kFormats, and its extension a word of kKnownExtensions.
 struct ScanFormat {
   std::string_view extension;  ///< lower case
-  std::string_view magic;      ///< what such a file starts with; empty = anything
+  std::string_view magic;      ///< first bytes of such a file; empty when they may be any
   OpenFunction open;
 };
 constexpr std::string_view kLasMagic = "LASF";
@@ -41,7 +42,7 @@ constexpr std::array<ScanFormat, 10> kFormats{{{".las", kLasMagic, openLas},
                                                {".3d", "", openText}}};
 constexpr std::string_view kKnownExtensions = "las, laz, ply, pcd, xyz, pts, csv, txt, asc, 3d";
 
-/// Scan formats that are known by name only.
+/// A format of scans that is known by its extension only, and the message for the user.
 struct UnreadFormat {
   std::string_view extension;
   std::string_view message;
@@ -94,7 +95,7 @@ std::unique_ptr<PointSource> openOne(const std::string& path, const SourceOption
   return format->open(path, options);
 }
 
-/// All scans below the folder, sorted by path; each file once, however many links lead to it.
+/// All scans below the folder, sorted by path. A file that several links lead to is there once.
 std::vector<std::string> scansBelow(const std::string& folder) {
   std::vector<std::string> scans;
   std::error_code failure;

@@ -5,12 +5,12 @@
 
 namespace strata {
 
-/// The whole of a small text file. Throws Error when it cannot be read or has more than `mostBytes`.
+/// Reads a small text file. Throws Error when it cannot be read or has more than `mostBytes` bytes.
 std::string readText(const std::string& path, std::size_t mostBytes = std::size_t{1} << 30);
-/// Replaces the file, whole or not at all: one that was there stays until then. Throws Error when it cannot be written
-/// (`report.json: writing: No space left on device`).
+/// Writes a text file. An older file of this name is replaced when the new one is complete, and stays when that fails.
+/// Throws Error (`report.json: writing: No space left on device`).
 void writeText(const std::string& path, std::string_view text);
-/// Makes the folder and the ones above it. Throws Error when that fails.
+/// Creates the folder and those above it that do not exist. Throws Error when that fails.
 void makeFolder(const std::string& path);
 
 }  // namespace strata

@@ -17,7 +17,7 @@ constexpr std::size_t kLargestVlrPayload = 65535;
 constexpr std::uint16_t kFormatBytes[kLasLastFormat + 1] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr std::uint8_t kCompressedBit = 0x80;
 
-/// A little-endian field; the caller has checked that it is inside.
+/// Loads a little-endian field; the caller has checked that it lies inside `bytes`.
 template <typename T>
 T load(std::span<const std::byte> bytes, std::size_t at) {
   T value;
@@ -39,7 +39,7 @@ void storeText(std::vector<std::byte>& bytes, std::size_t at, std::size_t size, 
   std::memcpy(bytes.data() + at, text.data(), std::min(size, text.size()));
 }
 
-/// Bytes of the UTF-8 character that `text` starts with; 0 when it starts with none.
+/// The length of the UTF-8 character at the start of `text`; 0 when there is none.
 std::size_t characterBytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -70,7 +70,7 @@ void checkSizes(const std::string& file, std::span<const std::byte> bytes, std::
   const auto minor = load<std::uint8_t>(bytes, 25);
   if (major != 1 || minor > 4)
     throw Error(file, "unknown LAS version, found " + versionText(major, minor) + " (expected 1.0 to 1.4)");
-  // Some writers of 1.3 leave its one field away; 1.4 cannot be read without its counts.
+  // Some writers of version 1.3 leave out the one field that it adds; version 1.4 cannot be read without its counts.
   const std::size_t needed = minor == 4 ? kHeaderBytes[4] : kHeaderBytes[0];
   const auto headerBytes = load<std::uint16_t>(bytes, 94);
   if (headerBytes < needed)
@@ -121,7 +121,7 @@ void readGrid(const std::string& file, std::span<const std::byte> bytes, LasHead
   if (header.bounds.empty()) header.bounds = Box();
 }
 
-/// The EVLRs of version 1.4, one at a time: they may be anywhere behind the points.
+/// Reads the EVLRs of version 1.4 one at a time, since they may lie anywhere behind the points.
 void readEvlrs(const ByteSource& file, LasHead& head) {
   std::uint64_t at = head.header.evlrStart;
   for (std::uint32_t i = 0; i < head.header.evlrCount; ++i) {
@@ -246,7 +246,7 @@ std::vector<std::byte> encodeLasHead(const std::string& file, const LasMeta& met
   store<std::uint8_t>(bytes, 104, static_cast<std::uint8_t>(meta.pointFormat | (compressed ? kCompressedBit : 0)));
   store<std::uint16_t>(bytes, 105, meta.recordBytes);
 
-  // The 32-bit counts are 0 where they cannot say the truth (LAS 1.4 R15, "legacy" fields).
+  // The 32-bit counts are 0 when they cannot hold the true ones (LAS 1.4 R15, "legacy" fields).
   const bool legacy = meta.pointFormat < 6 && totals.points <= std::numeric_limits<std::uint32_t>::max();
   store<std::uint32_t>(bytes, 107, legacy ? static_cast<std::uint32_t>(totals.points) : 0);
   for (std::size_t n = 1; n <= 5; ++n)

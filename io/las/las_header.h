@@ -12,8 +12,8 @@
 
 namespace strata {
 
-/// The public header block of a LAS or LAZ file (LAS 1.4 R15, table 3), checked: what stands here can be relied on,
-/// but for `bounds` and the two counts, which are claims.
+/// The public header block of a LAS or LAZ file (LAS 1.4 R15, table 3). Its fields are checked, except for `bounds` and
+/// the counts of points and VLRs, which are claims of the file.
 struct LasHeader {
   std::uint8_t versionMinor = 2;
   std::uint16_t fileSourceId = 0;
@@ -37,33 +37,34 @@ struct LasHeader {
   std::uint32_t evlrCount = 0;
 };
 
-inline constexpr std::size_t kLasLargestHeader = 375;  ///< bytes, of version 1.4
+inline constexpr std::size_t kLasLargestHeader = 375;  ///< bytes of a version 1.4 header
 inline constexpr int kLasLastFormat = 10;
 
 /// Bytes of a record of this point format without extra bytes.
 std::uint16_t lasFormatBytes(int pointFormat);
 
-/// A text field up to its first NUL; bytes that are not UTF-8 become '?', so that the text may stand in JSON.
+/// The text of a field up to its first NUL. Bytes that are not UTF-8 become '?', so that the text can be put into JSON.
 std::string lasText(std::string_view field);
 
-/// Decodes the header at the start of `bytes`. `file` names it in errors; `fileBytes` is the whole file's size.
-/// Throws Error for anything that cannot be read as LAS 1.0 to 1.4.
+/// Decodes the header at the start of `bytes`. `file` is the name for errors, and `fileBytes` the size of the whole
+/// file. Throws Error for anything that cannot be read as LAS 1.0 to 1.4.
 LasHeader parseLasHeader(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes);
 
-/// The records between header and points. `head` starts at byte 0 of the file and ends where points start. A count
-/// that is too large is cut to the records that are whole: real files have that.
+/// Decodes the VLRs between header and points. `head` is the file from byte 0 to the first point. When the header
+/// counts too many, as in some real files, the result has those that are whole.
 std::vector<LasMeta::Vlr> parseVlrs(std::span<const std::byte> head, const LasHeader& header);
 
-/// The header and all records of a file, those behind the points (EVLRs) included. A record of more than
-/// kLargestVlr bytes (waveform samples) is left out.
+/// The header and all VLRs of a file, including those behind the points (EVLRs). One of more than kLargestVlr bytes,
+/// which holds waveform samples, is left out.
 struct LasHead {
   LasHeader header;
   std::vector<LasMeta::Vlr> vlrs;
 };
 inline constexpr std::uint64_t kLargestVlr = std::uint64_t{64} << 20;
+/// Reads the head of a file. Throws as parseLasHeader() and ByteSource::read().
 LasHead readLasHead(const ByteSource& file);
 
-/// What the writer has to know beyond LasMeta.
+/// The fields of a header that depend on the points.
 struct LasTotals {
   std::uint64_t points = 0;
   std::array<std::uint64_t, 16> byReturn{};  ///< [n]: points of return number n; [0] is not written
@@ -71,12 +72,13 @@ struct LasTotals {
   std::uint64_t evlrStart = 0;
 };
 
-/// Header and VLRs as bytes, ready to stand before the points (the inverse of readLasHead). Records of more than
-/// 65535 bytes are left for encodeEvlrs. `compressed` sets bit 7 of the format. Throws Error, naming `file`, when
-/// LAS cannot state it: more points than 32 bits before version 1.4, more VLR bytes than 32 bits.
+/// The inverse of readLasHead(): the bytes of header and VLRs that come before the points. VLRs of more than 65535
+/// bytes are left to encodeEvlrs(). `compressed` sets bit 7 of the format. Throws Error naming `file` when the points
+/// need more than 32 bits to count before version 1.4, or the VLRs have more bytes than 32 bits count.
 std::vector<std::byte> encodeLasHead(const std::string& file, const LasMeta& meta,
                                      const std::vector<LasMeta::Vlr>& vlrs, bool compressed, const LasTotals& totals);
-/// The records too large for a VLR; empty where there are none. Only version 1.4 has a place for them.
+/// The bytes of the VLRs that are too large to come before the points, for the end of the file; empty when there are
+/// none. Only version 1.4 has a place for them.
 std::vector<std::byte> encodeEvlrs(const std::vector<LasMeta::Vlr>& vlrs);
 
 }  // namespace strata

@@ -12,9 +12,10 @@ namespace {
 constexpr std::size_t kIntensityAt = 12;
 constexpr std::size_t kReturnsAt = 14;
 constexpr std::size_t kHead = 6;              // packed: intensity, returns, classification, flags
-constexpr std::size_t kTailAt[2] = {16, 17};  // first byte that is kept as it stands; [1] for formats 6 to 10
+constexpr std::size_t kTailAt[2] = {16, 17};  // first byte that is copied unchanged; [1] for formats 6 to 10
 
-/// kTail: bytes copied as they stand, 0 = given at run time by `tail`. A constant lets the copy become a few moves.
+/// kTail is the number of bytes that are copied unchanged, or 0 when `tail` gives it at run time. A constant lets the
+/// compiler turn the copy into a few moves.
 template <bool kExtended, std::size_t kTail, typename Put, typename Position>
 void unpack(const std::byte* record, std::size_t tail, Put put, std::span<Position> positions, std::byte* out) {
   const std::size_t copied = kTail != 0 ? kTail : tail;

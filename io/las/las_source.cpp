@@ -49,7 +49,7 @@ class LasSource final : public PointSource {
   LasRecordFormat format_;
   glm::dvec3 scale_;
   std::uint64_t pointsOffset_;
-  std::uint64_t points_;  ///< that are there
+  std::uint64_t points_;  ///< that the file really has
 };
 
 class LasReader final : public PointReader {
@@ -121,7 +121,8 @@ LasMeta metaOf(const LasHead& head) {
   return meta;
 }
 
-/// The header's bounds as far as its grid can reach: a hint, for headers are wrong more often than points.
+/// The header's bounds, cut to what its grid can reach. They are a hint, since headers are wrong more often than
+/// points.
 Box plausibleBounds(const LasHeader& header) {
   if (header.bounds.empty()) return {};
   constexpr double kFirst = std::numeric_limits<std::int32_t>::min(), kLast = std::numeric_limits<std::int32_t>::max();
@@ -153,7 +154,7 @@ SourceInfo infoOf(const std::string& path, const LasHead& head, std::uint64_t fi
   return info;
 }
 
-/// Says that the file goes on behind the points that its header counts. Waveforms may stand there.
+/// Warns when the file has room for points behind those that its header counts, unless waveforms may lie there.
 void warnOfMore(const LasHeader& header, const std::string& path, std::uint64_t points, std::uint64_t fileBytes) {
   const bool waveforms = header.pointFormat == 4 || header.pointFormat == 5 || header.pointFormat >= 9;
   const bool evlrs = header.evlrCount > 0 && header.evlrStart >= header.pointsOffset && header.evlrStart <= fileBytes;
@@ -175,7 +176,7 @@ std::unique_ptr<PointSource> openLas(const std::string& path, const SourceOption
   if (header.compressed) return openLaz(std::move(file), head, std::move(info), options);
 
   const std::uint64_t whole = (file->size() - header.pointsOffset) / header.recordBytes;
-  // Writers that keep both counts but fill in one: the one that the file can hold is right.
+  // Some writers keep both counts but fill in one. The count that the file has room for is right.
   if (info.pointCount > whole && header.legacyPointCount != 0 && header.legacyPointCount <= whole)
     info.pointCount = header.legacyPointCount;
   if (info.pointCount > whole && !options.skipDamaged)

@@ -10,7 +10,7 @@
 namespace strata {
 namespace {
 
-constexpr std::size_t kEntryBytes = 192;  // of one described field
+constexpr std::size_t kEntryBytes = 192;  // of the descriptor of one field
 constexpr std::uint8_t kScaleOption = 1 << 3;
 constexpr std::uint8_t kOffsetOption = 1 << 4;
 constexpr ScalarType kTypes[10] = {ScalarType::u8,  ScalarType::i8,  ScalarType::u16, ScalarType::i16, ScalarType::u32,
@@ -42,14 +42,14 @@ std::string field(const std::uint8_t* bytes, std::size_t size) {
   return lasText({reinterpret_cast<const char*>(bytes), size});
 }
 
-/// Decodes the 192 bytes of an entry; `components` is 0 for a type that is not known.
+/// Decodes a descriptor; `components` is 0 for an unknown type.
 Attribute decodeEntry(const std::uint8_t* entry) {
   Attribute attribute;
   const std::uint8_t type = entry[2], options = entry[3];
   attribute.name = std::string(kPrefix) + field(entry + 4, 32);
   attribute.description = field(entry + 160, 32);
   if (type == 0) {
-    attribute.components = options;  // bytes without a type: their number stands in place of the options
+    attribute.components = options;  // untyped bytes: the options field is their number
   } else if (type <= 30) {
     attribute.type = kTypes[(type - 1) % 10];
     attribute.components = static_cast<std::uint16_t>(1 + (type - 1) / 10);
@@ -86,7 +86,7 @@ void encodeEntry(std::vector<std::uint8_t>& bytes, const Attribute& attribute, c
   std::memcpy(entry + 160, attribute.description.data(), std::min<std::size_t>(attribute.description.size(), 32));
 }
 
-/// The value of a key in a GeoTIFF key directory; 0 where it is absent or stands elsewhere.
+/// The value of a key in a GeoTIFF key directory; 0 when it is absent or stored outside of the directory.
 std::uint16_t geoKey(const std::vector<std::uint8_t>& directory, std::uint16_t wanted) {
   for (std::size_t at = 8; at + 8 <= directory.size(); at += 8) {
     const auto key = load<std::uint16_t>(directory.data() + at);

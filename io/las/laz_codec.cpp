@@ -38,8 +38,8 @@ class LaszipHandle {
   laszip_POINTER handle_ = nullptr;
 };
 
-/// A file that LASzip can open: `head` followed by bytes [begin, end) of a real file. LASzip thus never sees what a
-/// file says of itself, only headers that we have written.
+/// A file that LASzip can open: `head`, then the bytes [begin, limit) of a real file. So LASzip sees only headers that
+/// we have written.
 class LazStream final : private std::streambuf, public std::istream {
  public:
   LazStream(const ByteSource& file, std::vector<std::byte> head, std::uint64_t begin, std::uint64_t limit)
@@ -51,16 +51,16 @@ class LazStream final : private std::streambuf, public std::istream {
     show(head_);
   }
 
-  /// Position in the real file; meaningful behind the head.
+  /// The position in the real file; meaningful once the head has been read.
   std::uint64_t position() const { return next_ - static_cast<std::uint64_t>(egptr() - gptr()); }
-  /// Why the file could not be read.
+  /// The reason why the file could not be read; empty when it could.
   const std::optional<Error>& failure() const { return failure_; }
 
  private:
   using Byte = std::streambuf::traits_type;
 
-  /// LASzip goes on with garbage unless it sees both the end and a bad stream (its versions differ in which they ask
-  /// for), so whatever ends this stream looks like both.
+  /// Some versions of LASzip look for the end of the stream and some for a bad one, and go on with garbage otherwise.
+  /// So whatever ends this stream looks like both.
   std::streambuf::int_type underflow() override {
     const auto bytes = static_cast<std::size_t>(std::min<std::uint64_t>(kBufferBytes, end_ - next_));
     try {
@@ -79,7 +79,7 @@ class LazStream final : private std::streambuf, public std::istream {
     return Byte::to_int_type(*gptr());
   }
 
-  /// Answers where it stands, and goes nowhere.
+  /// Tells the position, and refuses to change it.
   Byte::pos_type seekoff(Byte::off_type offset, std::ios_base::seekdir from, std::ios_base::openmode) override {
     if (offset != 0 || from != std::ios_base::cur) return Byte::pos_type(Byte::off_type(-1));
     return Byte::pos_type(static_cast<Byte::off_type>(passed_) + (gptr() - eback()));
@@ -93,13 +93,13 @@ class LazStream final : private std::streambuf, public std::istream {
   const ByteSource& file_;
   std::vector<std::byte> head_;
   std::vector<std::byte> buffer_;
-  std::uint64_t next_;  ///< behind the buffer, in the real file
+  std::uint64_t next_;  ///< offset in the real file of the byte behind the buffer
   std::uint64_t end_;
   std::uint64_t passed_ = 0;  ///< bytes of this stream before the buffer
   std::optional<Error> failure_;
 };
 
-/// The end of a file being written, as LASzip writes to it: forward, but for 8 bytes that it fills in later.
+/// The end of a file that LASzip writes to. It goes forward only, except for 8 bytes that it fills in later.
 class LazSink final : public std::streambuf {
  public:
   explicit LazSink(OutputFile& file) : file_(file), start_(file.size()) { buffer_.reserve(kBufferBytes); }
@@ -152,7 +152,7 @@ class LazSink final : public std::streambuf {
   }
 
   OutputFile& file_;
-  std::uint64_t start_;  ///< of the buffer, in the file
+  std::uint64_t start_;  ///< offset of the buffer in the file
   std::vector<std::byte> buffer_;
   std::optional<Error> failure_;
 };
@@ -171,7 +171,7 @@ std::vector<std::byte> headOfRun(const std::string& file, const LasHeader& heade
                             withChunkSize(format, static_cast<std::uint32_t>(run.chunkPoints))};
   std::vector<std::byte> head = encodeLasHead(file, meta, {laszip}, true, totals);
   if (format.compressor != LazFormat::kPointwise) {
-    // A chunk table that starts here is one that was never written: LASzip then reads from chunk to chunk.
+    // LASzip takes a chunk table at this offset for one that was never written, and reads from chunk to chunk.
     const std::uint64_t table = head.size();
     const auto* bytes = reinterpret_cast<const std::byte*>(&table);
     head.insert(head.end(), bytes, bytes + sizeof table);
@@ -187,7 +187,7 @@ std::size_t extraBytes(const LasRecordFormat& format) {
   return format.recordBytes - std::size_t{lasFormatBytes(format.pointFormat)};
 }
 
-// A laszip_point starts as records of formats 0 to 5 do.
+// A laszip_point begins like the records of formats 0 to 5.
 static_assert(offsetof(laszip_point_struct, extended_scan_angle) == 20);
 
 void writeRecord(const LasRecordFormat& format, const laszip_point_struct& point, std::byte* record) {
@@ -231,7 +231,7 @@ void readRecord(const LasRecordFormat& format, const std::byte* record, laszip_p
     point.extended_return_number = returns & 15u;
     point.extended_number_of_returns = returns >> 4u & 15u;
     point.extended_classification_flags = flags & 15u;
-    // LASzip wants these in both places, and the old class to be 0 or the same.
+    // LASzip wants these flags in both places, and the old class to be 0 or equal to the new one.
     point.synthetic_flag = flags & 1u;
     point.keypoint_flag = flags >> 1u & 1u;
     point.withheld_flag = flags >> 2u & 1u;
@@ -260,7 +260,7 @@ struct LazDecoder::Parts {
     if (laszip_open_reader_stream(handle, stream, &compressed) != 0 || laszip_get_point_pointer(handle, &point) != 0)
       throw Error(file.name(), "LASzip cannot read the points, found " + reason(handle) + " (expected points)");
   }
-  /// Destroying the handle alone loses some of what opening took.
+  // Destroying the handle alone would leak memory that opening took.
   ~Parts() { laszip_close_reader(handle); }
   Parts(const Parts&) = delete;
   Parts& operator=(const Parts&) = delete;
@@ -291,7 +291,7 @@ std::optional<Error> LazDecoder::next(std::uint64_t firstPoint, std::byte* recor
   writeRecord(p.record, *p.point, record);
   ++p.done;
   if (p.run.chunkEnds.empty() || (p.done % p.run.chunkPoints != 0 && p.done != p.run.points)) return {};
-  // LASzip decodes garbage without complaint; but only sound chunks end where the next one starts.
+  // LASzip decodes garbage without complaint, but only undamaged chunks end where the next one begins.
   const std::uint64_t expected = p.run.chunkEnds[static_cast<std::size_t>((p.done - 1) / p.run.chunkPoints)];
   if (p.stream.position() == expected) return {};
   return Error(p.file.name(), "compressed points are damaged before point " + std::to_string(firstPoint + p.done) +
@@ -307,7 +307,7 @@ struct LazEncoder::Parts {
     laszip_U8* bytes = nullptr;
     laszip_U32 size = 0;
     check(laszip_create_laszip_vlr(handle, &bytes, &size));
-    // What comes back is a whole VLR; the record proper follows its header.
+    // LASzip returns a whole VLR, whose data follow its header.
     constexpr std::size_t kVlrHeader = 54;
     if (size > kVlrHeader) record.assign(bytes + kVlrHeader, bytes + size);
     check(laszip_get_point_pointer(handle, &point));

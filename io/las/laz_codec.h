@@ -14,26 +14,29 @@
 
 namespace strata {
 
-/// Consecutive chunks of equal size, but for the last one. LASzip decodes them as one stream.
+/// LAZ points are compressed in chunks. This is the place where they are decoded and encoded, by the LASzip library,
+/// which no other file of ours includes.
+
+/// Consecutive chunks, all of equal size except for the last, which LASzip decodes as one stream.
 struct LazRun {
-  std::vector<std::uint64_t> chunkEnds;  ///< in the file; empty where there is no chunk table
+  std::vector<std::uint64_t> chunkEnds;  ///< in the file; empty when there is no chunk table
   std::uint64_t begin = 0, end = 0;      ///< bytes in the file
   std::uint64_t chunkPoints = 0;         ///< of every chunk but the last; 0 for a stream without chunks
   std::uint64_t points = 0;
 };
 
-/// LASzip's reader of one run. It is shown a file of our making around the run's bytes, so nothing that the real
+/// Decodes one run. LASzip is shown a file of our making around the bytes of the run, so that nothing which the real
 /// file's header or chunk table says reaches it.
 class LazDecoder {
  public:
-  /// `file`, `run` must outlive it.
+  /// `file` and `run` must outlive the decoder. Throws Error when LASzip refuses.
   LazDecoder(const ByteSource& file, const LasHeader& header, const LazFormat& format, const LazRun& run);
   ~LazDecoder();
 
   /// Points not yet decoded.
   std::uint64_t left() const;
-  /// Decodes the next point into `record`, as it would stand in a LAS file, or says what is wrong with it.
-  /// `firstPoint` is the number in the file of the run's first point.
+  /// Decodes the next point into `record`, as it would be in a LAS file, or returns what is wrong with it. `firstPoint`
+  /// is the number in the file of the first point of the run.
   std::optional<Error> next(std::uint64_t firstPoint, std::byte* record);
 
  private:
@@ -41,18 +44,19 @@ class LazDecoder {
   std::unique_ptr<Parts> parts_;
 };
 
-/// LASzip's writer: appends compressed points and their chunk table to a file.
+/// Appends compressed points and their chunk table to a file.
 class LazEncoder {
  public:
   LazEncoder(OutputFile& file, const LasRecordFormat& format);
   ~LazEncoder();
 
-  /// The LASzip record that has to stand among the VLRs.
+  /// The data of the LASzip VLR that the file must have.
   const std::vector<std::uint8_t>& record() const;
-  /// From here on points go to the end of `file`.
+  /// Begins to append points at the end of `file`, whose head must be complete.
   void start();
-  /// Whole records as they would stand in a LAS file.
+  /// Appends whole records as they would be in a LAS file.
   void write(std::span<const std::byte> records);
+  /// Completes the last chunk and appends the chunk table.
   void finish();
 
  private:

@@ -21,7 +21,7 @@ T load(const void* bytes) {
   return value;
 }
 
-/// Kinds of items, as LASzip numbers them.
+/// The kinds of items, with LASzip's numbers.
 enum Item : std::uint16_t {
   kBytes = 0,
   kPoint10 = 6,
@@ -40,7 +40,7 @@ struct ItemSize {
   std::uint16_t bytes;
 };
 
-/// The items that a record of this format is cut into, in order.
+/// The items that records of this format are cut into, in order.
 std::vector<ItemSize> expectedItems(const LasHeader& header) {
   std::vector<ItemSize> items;
   const int id = header.pointFormat;
@@ -60,7 +60,7 @@ std::vector<ItemSize> expectedItems(const LasHeader& header) {
   return items;
 }
 
-/// Versions that LASzip can decode: mixing them with the wrong compressor is what it does not check for.
+/// True for versions that LASzip can decode. LASzip itself does not check whether a version fits the compressor.
 bool versionFits(std::uint16_t type, std::uint16_t version, std::uint16_t compressor) {
   if (compressor == LazFormat::kLayeredChunked) return version == 3 || version == 4;
   if (type >= kPoint14) return version == 2;
@@ -152,7 +152,7 @@ std::vector<LazChunk> readChunkTable(const ByteSource& file, const LasHeader& he
   if (count > most)
     throw Error(file.name(), "the chunk table is damaged, found " + std::to_string(count) +
                                  " chunks (expected at most " + std::to_string(most) + ")");
-  // No entry takes more than 16 bytes even where it compresses badly.
+  // The integers of a chunk take at most 16 bytes, even when they compress badly.
   std::vector<std::byte> packed(
       static_cast<std::size_t>(std::min<std::uint64_t>(file.size() - tableOffset - 8, std::uint64_t{count} * 16 + 64)));
   file.read(tableOffset + 8, packed);

@@ -9,9 +9,9 @@
 namespace strata {
 namespace {
 
-constexpr std::uint32_t kShortestLength = 1u << 24;  // of the coder's interval
+constexpr std::uint32_t kShortestLength = 1u << 24;  // shortest interval of the coder
 constexpr unsigned kSymbolShift = 15, kBitShift = 13;
-constexpr unsigned kHighBits = 8;  // of a long corrector, coded by a model; the rest as they are
+constexpr unsigned kHighBits = 8;  // of a long corrector are coded by a model, the lower ones as they are
 constexpr unsigned kIntegerBits = 32;
 
 }  // namespace
@@ -48,9 +48,9 @@ struct LazIntegers::Models {
     for (unsigned bits = 1; bits <= kIntegerBits; ++bits) correctors.emplace_back(1u << std::min(bits, kHighBits));
   }
 
-  SymbolModel bitCounts[2] = {SymbolModel(kIntegerBits + 1), SymbolModel(kIntegerBits + 1)};  // one a context
+  SymbolModel bitCounts[2] = {SymbolModel(kIntegerBits + 1), SymbolModel(kIntegerBits + 1)};  // one for each context
   std::vector<SymbolModel> correctors;                                                        // [bits - 1]
-  // Of the corrector of zero bits: 0 or 1.
+  // Frequencies of the corrector of zero bits, which is 0 or 1.
   std::uint32_t zeros = 1, total = 2, probability = 1u << (kBitShift - 1), cycle = 4, untilUpdate = 4;
 };
 
@@ -139,7 +139,7 @@ std::uint32_t LazIntegers::next(std::uint32_t predicted, int context) {
     const unsigned low = k - kHighBits;
     corrector = corrector << low | bits(low);
   }
-  // Correctors of k bits stand for [1 - 2^k, -2^(k-1)] and [2^(k-1) + 1, 2^k].
+  // Correctors of k bits mean [1 - 2^k, -2^(k-1)] and [2^(k-1) + 1, 2^k].
   if (corrector >= 1u << (k - 1)) return predicted + corrector + 1;
   return predicted + corrector - ((1u << k) - 1);
 }

@@ -7,15 +7,17 @@
 
 namespace strata {
 
-/// Decoder of the arithmetic-coded integers of a LAZ chunk table: 32 bits, two contexts (Isenburg 2013, "LASzip:
-/// lossless compression of LiDAR data", section 4; coder after Said 2004, "Introduction to arithmetic coding").
+/// Decodes the arithmetic-coded integers of a LAZ chunk table, which have 32 bits and two contexts (Isenburg 2013,
+/// "LASzip: lossless compression of LiDAR data", section 4; the coder is that of Said 2004, "Introduction to arithmetic
+/// coding").
 class LazIntegers {
  public:
-  /// `bytes` must stay; `file` is named in errors.
+  /// `bytes` must outlive the decoder; `file` is the name for errors.
   LazIntegers(std::string file, std::span<const std::byte> bytes);
   ~LazIntegers();
 
-  /// The next integer, coded as a difference from `predicted`. Throws Error when the bytes end or make no sense.
+  /// Decodes the next integer, which is coded as a difference to `predicted`. Throws Error when the bytes end or are
+  /// damaged.
   std::uint32_t next(std::uint32_t predicted, int context);
 
  private:

@@ -14,12 +14,12 @@ namespace strata {
 namespace {
 
 constexpr std::uint64_t kPartPoints = std::uint64_t{1} << 19;
-constexpr std::size_t kBatchPoints = 4096;       // unpacked at once
+constexpr std::size_t kBatchPoints = 4096;       // decoded before they are unpacked
 constexpr std::uint64_t kPointsPerByte = 10000;  // more than any cloud compresses to
 
 struct LazPart {
   std::vector<LazRun> runs;
-  std::uint64_t firstPoint = 0;  ///< in the file, for messages
+  std::uint64_t firstPoint = 0;  ///< number in the file, for messages
 };
 
 /// A file's heads, and its chunks as parts.
@@ -95,7 +95,8 @@ class LazReader final : public PointReader {
     return done != 0;
   }
 
-  /// Fills the batch with up to `wanted` records and returns how many; fewer at the end of a run or at damage.
+  /// Fills the batch with at most `wanted` records and returns their number, which is less at the end of a run or at
+  /// damage.
   std::size_t decode(std::size_t wanted) {
     try {
       if (!decoder_ || decoder_->left() == 0) {
@@ -128,7 +129,7 @@ class LazReader final : public PointReader {
   std::uint64_t nextPoint_;
   std::unique_ptr<LazDecoder> decoder_;
   std::vector<std::byte> batch_;
-  std::optional<Error> failure_;  ///< thrown once the points before it are handed out
+  std::optional<Error> failure_;  ///< thrown after the points before it were handed out
 };
 
 std::unique_ptr<PointReader> LazSource::open(std::size_t part, bool integers) const {
@@ -202,7 +203,7 @@ std::unique_ptr<PointSource> openLaz(std::unique_ptr<ByteSource> file, const Las
         throw Error(info.path, "the file ends early, found chunks of " + std::to_string(held) + " points (expected " +
                                    std::to_string(points) + ")");
       points = std::min(points, held);
-      std::uint64_t before = 0, more = 0;  // points of whole chunks behind the counted ones
+      std::uint64_t before = 0, more = 0;  // points of whole chunks behind those that the header counts
       for (const LazChunk& chunk : chunks) {
         if (before >= points) more += chunk.points;
         before += chunk.points;

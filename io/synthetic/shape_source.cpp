@@ -16,7 +16,7 @@ namespace strata::synthetic {
 namespace {
 
 constexpr std::string_view kScheme = "synthetic:";
-constexpr std::size_t kBlockPoints = 4096;  // generated at a time, small enough for the second cache
+constexpr std::size_t kBlockPoints = 4096;  // generated at a time, few enough for the second cache
 
 using Factory = std::unique_ptr<Shape> (*)(std::uint64_t points, std::uint64_t seed);
 struct NamedShape {
@@ -102,7 +102,7 @@ PointLayout layoutOf(const ShapeExtent& extent) {
   return PointLayout(std::move(attributes));
 }
 
-/// The frame's box in whole grid steps from the origin; what points are clamped into.
+/// The box of the extent in whole grid steps from the origin. Points are clamped into it.
 struct GridBox {
   glm::dvec3 low, high;
 };

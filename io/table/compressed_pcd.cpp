@@ -16,12 +16,12 @@ namespace {
 
 constexpr std::size_t kBlockPoints = 4096;
 
-/// A cloud unpacked: all values of the first field, then all of the second, and so on.
+/// An unpacked cloud: all values of the first field, then all of the second, and so on.
 class Columns {
  public:
   Columns(std::vector<std::byte> bytes, const PcdHeader& header) : bytes_(std::move(bytes)), header_(header) {}
 
-  /// Gathers points first to first + count as records.
+  /// Gathers the points first to first + count as records.
   void gather(std::uint64_t first, std::size_t count, std::vector<std::byte>& records) const {
     records.resize(count * header_.recordBytes);
     for (const Field& field : header_.fields) {
@@ -37,7 +37,7 @@ class Columns {
   const PcdHeader& header_;
 };
 
-/// The sizes of the packed and the unpacked body stand before it, 32 bits each.
+/// Unpacks the body of a file. Before it come its packed and its unpacked size, 32 bits each.
 Columns unpack(const ByteSource& bytes, const PcdHeader& header, std::uint64_t memoryBytes) {
   std::uint32_t sizes[2] = {};
   if (bytes.size() < header.headerBytes + sizeof sizes)

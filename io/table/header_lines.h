@@ -6,16 +6,16 @@
 
 namespace strata {
 
-/// A text header that stands before the points of a PLY or PCD file, taken line by line; every fault names its line.
+/// The text header of a PLY or PCD file, taken line by line, so that every error names its line.
 class HeaderLines {
  public:
-  /// `file` names the file in errors; `head` is its beginning. Both have to outlive the object.
+  /// `file` is the name for errors and `head` the beginning of the file. Both must outlive the object.
   HeaderLines(const std::string& file, std::string_view head) : file_(file), head_(head) {}
 
-  /// Splits the next line into words. False where `head` holds no other whole line.
+  /// Splits the next line into words; false when `head` has no further whole line.
   bool next();
   const std::vector<std::string_view>& words() const { return words_; }
-  /// Bytes and lines taken so far.
+  /// The bytes and the lines taken so far.
   std::size_t bytes() const { return bytes_; }
   std::size_t lines() const { return lines_; }
 

@@ -10,7 +10,7 @@
 
 namespace strata {
 
-/// One property of an element; a list has a count of type `countType` before its items.
+/// One property of an element. A list has a `countType`, which is the type of the count before its items.
 struct PlyProperty {
   std::string name;
   ScalarType type = ScalarType::f32;
@@ -23,22 +23,22 @@ struct PlyElement {
   std::vector<PlyProperty> properties;
 
   bool hasLists() const;
-  /// Bytes of one element in a binary file without lists.
+  /// Bytes of one item of the element in a binary file, when it has no lists.
   std::size_t bytes() const;
 };
 
 enum class PlyEncoding : std::uint8_t { ascii, littleEndian, bigEndian };
 
-/// The header of a PLY file (Turk 1994). Types may be called as there, or int8 to float64; `bool` is a byte.
+/// The header of a PLY file (Turk 1994). Types may have the names given there or int8 to float64; `bool` is a byte.
 struct PlyHeader {
   PlyEncoding encoding = PlyEncoding::ascii;
   std::vector<PlyElement> elements;
-  std::size_t vertex = 0;       ///< index of the element that has the points
-  std::size_t headerBytes = 0;  ///< with the line end after end_header
+  std::size_t vertex = 0;       ///< index of the element whose items are the points
+  std::size_t headerBytes = 0;  ///< including the end of the line end_header
   std::uint64_t headerLines = 0;
 };
 
-/// Reads the header at the start of `head`. Throws Error naming `file`.
+/// Decodes the header at the start of `head`. Throws Error naming `file` and the line.
 PlyHeader parsePlyHeader(const std::string& file, std::string_view head);
 
 }  // namespace strata

@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint64_t kHeadBytes = 1 << 20;
 constexpr std::size_t kWindowBytes = 1 << 16;
 
-/// Walks through elements with lists, whose size only their counts tell.
+/// Passes over elements with lists, whose sizes only the counts in them tell.
 class ListWalker {
  public:
   ListWalker(const ByteSource& bytes, std::uint64_t offset, bool bigEndian)
@@ -36,7 +36,7 @@ class ListWalker {
   }
 
  private:
-  /// Size of the items of the list whose count stands here; moves behind the count.
+  /// Reads the count of the list that begins here, and returns the bytes of its items.
   std::uint64_t listBytes(const PlyProperty& property) {
     const std::size_t size = scalarBytes(*property.countType);
     std::byte value[8] = {};

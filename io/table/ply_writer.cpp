@@ -39,7 +39,7 @@ std::string_view plyType(ScalarType type) {
   return "double";  // PLY has no 64-bit integers
 }
 
-/// A name of one word that the header has not used yet.
+/// A name of one word that no other property of the header has.
 std::string propertyName(std::string name, std::set<std::string>& used) {
   for (char& c : name)
     if (!std::isgraph(static_cast<unsigned char>(c))) c = '_';
@@ -135,7 +135,7 @@ class PlyWriter final : public ScanWriter {
   static bool isOctahedral(const Attribute& a) { return a.name == attribute::kNormalOctahedral && a.bytes() == 2; }
   static std::size_t writtenBytes(const Attribute& a) { return isOctahedral(a) ? sizeof(glm::vec3) : a.bytes(); }
 
-  /// Colours are written apart, and what Strata made for itself is not written.
+  /// False for colours, which are written apart, and for attributes that Strata made for itself, which are not written.
   bool isPlain(std::size_t i) const {
     return static_cast<int>(i) != rgb_ && !info_.layout.attributes()[i].isInternal();
   }

@@ -13,7 +13,7 @@
 namespace strata {
 namespace {
 
-/// Lower case without underscores and a leading `scalar_`.
+/// A name as it is compared: in lower case, without underscores and a leading `scalar_`.
 std::string plainName(std::string_view name) {
   std::string plain = lowerCase(name);
   std::erase(plain, '_');
@@ -25,7 +25,7 @@ struct Known {
   std::string_view name;
   ScalarType type;
 };
-/// Attributes that keep their meaning when a field has their name and type.
+/// Attributes that a field becomes when it has their name and type.
 constexpr std::array<Known, 10> kKnown{{{attribute::kNir, ScalarType::u16},
                                         {attribute::kFlags, ScalarType::u8},
                                         {attribute::kReturnNumber, ScalarType::u8},

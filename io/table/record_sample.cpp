@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kPowersOfTen[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 
-/// Raises `decimals` to what `value` needs to be integer * 10^-decimals but for rounding: two units in its last place
-/// or 1e-12, as where scale * integer + offset was computed. Digits within that rounding do not count as a grid.
+/// Raises `decimals` until `value` is integer * 10^-decimals up to rounding, which is two units in its last place or
+/// 1e-12, as after computing scale * integer + offset. Digits within that rounding do not count as a grid.
 void countDecimals(double value, int& decimals) {
   const double rounding = std::max(std::abs(value) * 4.5e-16, 1e-12);
   for (; decimals < RecordSample::kManyDecimals; ++decimals) {

@@ -93,7 +93,7 @@ class RecordSource final : public PointSource {
   }
 
  private:
-  /// How many points the file really has.
+  /// The number of points that the file really has.
   std::uint64_t checkedCount() const {
     const std::uint64_t rest = bytes_->size() - std::min(bytes_->size(), file_.dataOffset);
     if (file_.recordBytes == 0) throw Error(bytes_->name(), "its points have no fields");

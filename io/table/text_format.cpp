@@ -12,7 +12,7 @@
 namespace strata {
 namespace {
 
-/// What --columns may name besides `-` and extra:NAME.
+/// The names that --columns knows, besides extra:NAME.
 constexpr std::array<std::string_view, 25> kColumnNames{"x",
                                                         "y",
                                                         "z",
@@ -56,7 +56,7 @@ constexpr std::array<Alias, 12> kAliases{{{"easting", "x"},
                                           {"returnnumber", "return_number"},
                                           {"numberofreturns", "number_of_returns"}}};
 
-/// `X [m]` is x; names that nobody knows stay as they are.
+/// The name of a column, given as it is written in the file: `X [m]` is x. Unknown names stay as they are.
 std::string columnName(std::string_view written) {
   std::string_view bare = written.substr(0, written.find_first_of("([{"));
   while (bare.ends_with(' ')) bare.remove_suffix(1);
@@ -70,7 +70,7 @@ std::string columnName(std::string_view written) {
   return name.empty() ? "-" : name;
 }
 
-/// Throws where x, y or z is not there exactly once.
+/// Calls `fail` for each of x, y and z that is not there exactly once.
 template <typename Failure>
 void checkAxes(const std::vector<std::string>& columns, const Failure& fail) {
   for (const char* axis : {"x", "y", "z"}) {
@@ -145,7 +145,7 @@ class FormatDetector {
     ++lineNumber_;
   }
 
-  /// True where `line` is the first of the points.
+  /// True when `line` is the first point.
   bool lookAt(std::string_view line, bool& counted) {
     const std::size_t start = line.find_first_not_of(" \t\r");
     if (start == std::string_view::npos) return false;
@@ -191,7 +191,7 @@ class FormatDetector {
     return std::all_of(token.begin(), token.end(), [](char c) { return c >= '0' && c <= '9'; }) && !token.empty();
   }
 
-  /// A line of names. Comments that are none are passed over.
+  /// Takes a line of names. Comments that are no such line are passed over.
   void takeNames(bool comment) {
     if (format_.named) return;
     std::vector<std::string> names;

@@ -42,7 +42,7 @@ template <typename T>
 bool storeFloat(std::string_view token, std::byte* out) {
   T value = 0;
   if (!parse(token, value)) {
-    double wide = 0.0;  // numbers that float32 has no room for become 0 or infinite
+    double wide = 0.0;  // numbers beyond the range of float32 become 0 or infinite
     if (!parse(token, wide)) return false;
     value = static_cast<T>(wide);
   }

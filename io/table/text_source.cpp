@@ -19,7 +19,7 @@ namespace strata {
 namespace {
 
 constexpr std::uint64_t kHeadBytes = 256 << 10;  ///< comments and names must fit in here
-constexpr int kFloat32Digits = 6;                ///< that survive a float
+constexpr int kFloat32Digits = 6;                ///< digits that a float keeps
 
 bool fits(const ColumnSurvey& column, ScalarType type) {
   if (!column.integers || column.range.empty()) return false;
@@ -41,7 +41,7 @@ bool fits(const ColumnSurvey& column, ScalarType type) {
   }
 }
 
-/// The smallest type that keeps what is written.
+/// The smallest type that loses nothing of the numbers in a column.
 ScalarType columnType(const std::string& name, const ColumnSurvey& column) {
   if (name == "x" || name == "y" || name == "z") return ScalarType::f64;
   if (const auto known = knownFieldType(name))
@@ -51,7 +51,7 @@ ScalarType columnType(const std::string& name, const ColumnSurvey& column) {
   return column.digits <= kFloat32Digits ? ScalarType::f32 : ScalarType::f64;
 }
 
-/// Colours are of one kind: where one is a fraction, a 1 of another stands for full light.
+/// Gives all colours one type: when one of them is a fraction, a 1 in another means full light.
 void matchColours(std::vector<Field>& fields) {
   std::vector<Field*> colours;
   for (Field& field : fields)

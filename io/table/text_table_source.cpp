@@ -80,7 +80,7 @@ class TextTableSource final : public PointSource {
     return ranges;
   }
 
-  /// All coordinates are multiples of one power of ten where none has more than kMostDecimals digits behind the point.
+  /// When no coordinate has more than kMostDecimals decimals, all are multiples of one power of ten.
   void setGrid(const TextSurvey& survey) {
     const AxisFields axes = findAxes(table_.fields);
     int decimals = 0;
