@@ -12,10 +12,11 @@ namespace {
 constexpr int kMostBits = HuffmanCode::kMostBits;
 constexpr std::size_t kTableSize = std::size_t{1} << kMostBits;
 constexpr std::size_t kStreams = 4;
-/// Look-ups of a stream between two refills, which leave at least 56 bits.
+/// Look-ups of a stream between two refills; a refill leaves at least 56 bits.
 constexpr int kLookUps = 5;
 
-/// Lengths of an optimal code without a limit, by joining the two rarest again and again; 0 for what does not occur.
+/// The lengths of an optimal code without a limit, found by joining the two rarest again and again. Symbols that do not
+/// occur have 0.
 int unlimitedLengths(const HuffmanCode::Histogram& counts, std::array<std::uint8_t, 256>& lengths) {
   struct Node {
     std::uint64_t count;
@@ -31,7 +32,7 @@ int unlimitedLengths(const HuffmanCode::Histogram& counts, std::array<std::uint8
             [&](std::uint8_t a, std::uint8_t b) { return counts[a] != counts[b] ? counts[a] < counts[b] : a < b; });
   for (int i = 0; i < leaves; ++i)
     nodes[static_cast<std::size_t>(i)] = {counts[symbols[static_cast<std::size_t>(i)]], 0};
-  // Leaves ascend, and so do the joined nodes: the rarest is always at the head of one of the two queues.
+  // Both queues are sorted, leaves and joined nodes alike, so the rarest is always at the head of one of them.
   int leaf = 0, joined = leaves;
   const int root = 2 * leaves - 2;
   for (int next = leaves; next <= root; ++next) {
@@ -65,21 +66,22 @@ unsigned reversed(unsigned code, int bits) {
   return code >> (16 - bits);
 }
 
-/// Canonical codes, in the order of symbols: those of one length ascend, after all shorter ones.
+/// Visits the canonical codes in the order of their symbols. Codes of one length ascend, and come after all shorter
+/// ones.
 template <class Visit>
 void visitCodes(const std::array<std::uint8_t, 256>& lengths, Visit&& visit) {
   std::array<unsigned, kMostBits + 2> next{};
   for (const std::uint8_t bits : lengths) ++next[bits + 1u];
-  next[0] = next[1] = 0;  // what has no code
+  next[0] = next[1] = 0;  // symbols without a code
   for (std::size_t bits = 1; bits < next.size(); ++bits) next[bits] = (next[bits] + next[bits - 1]) << 1;
   for (std::size_t s = 0; s < 256; ++s)
     if (lengths[s] > 0) visit(s, lengths[s], reversed(next[lengths[s]]++, lengths[s]));
 }
 
-/// What 11 bits of a stream begin with: one value, or two where both codes lie within.
+/// The values that 11 bits of a stream begin with: one, or two when both codes lie within.
 struct Lookup {
-  std::uint16_t values;  ///< the first one low
-  std::uint8_t bits;     ///< of both
+  std::uint16_t values;  ///< the first in the lower byte
+  std::uint8_t bits;     ///< of all codes together
   std::uint8_t count;
 };
 static_assert(sizeof(Lookup) == 4);
@@ -88,7 +90,7 @@ struct Table {
   std::array<std::uint8_t, 256> lengths;
 };
 
-/// Columns of fewer values are not worth the time that looking for pairs takes.
+/// For columns of fewer values, looking for pairs takes more time than it saves.
 constexpr std::size_t kLeastForPairs = 4096;
 
 /// False unless the lengths make a complete code.
@@ -101,7 +103,8 @@ bool makeTable(bool withPairs, Table& table) {
     room -= kTableSize >> bits;
   }
   if (room != 0) return false;
-  const auto put = [&table](std::size_t at, std::uint32_t entry) {  // as one word, or reading it soon after would wait
+  const auto put = [&table](std::size_t at,
+                            std::uint32_t entry) {  // as one word, since reading one soon after would wait for halves
     std::memcpy(&table.entries[at], &entry, sizeof entry);
   };
   visitCodes(table.lengths, [&](std::size_t symbol, int bits, unsigned code) {
@@ -109,7 +112,7 @@ bool makeTable(bool withPairs, Table& table) {
     for (std::size_t at = code; at < kTableSize; at += std::size_t{1} << bits) put(at, entry);
   });
   if (!withPairs) return true;
-  // From the top down: what is left of the bits is a smaller number, whose entry is still that of one value.
+  // From the top down, since the bits that are left are a smaller number, whose entry must still be that of one value.
   for (std::size_t at = kTableSize; at-- > 1;) {
     std::uint32_t first, second;
     std::memcpy(&first, &table.entries[at], sizeof first);
@@ -120,18 +123,18 @@ bool makeTable(bool withPairs, Table& table) {
   return true;
 }
 
-/// One bit stream, read from the least significant bit up. Above the last bit that `window_` has stands a 1, so its
-/// leading zeros count what is used of the word at `at_`.
+/// One bit stream, read from the least significant bit up. A 1 follows the last bit in `window_`, so the zeros above it
+/// count the bits used of the word at `at_`.
 class Stream {
  public:
   Stream(const std::byte* data, std::size_t bytes) : at_(data), end_(data + bytes) {}
 
-  /// Where the next `values` go.
+  /// The next `values` values are written to `to`.
   void setTarget(std::uint8_t* to, std::size_t values) {
     to_ = to;
     toEnd_ = to + values;
   }
-  /// So often one can refill and look up kLookUps times without a look at the ends.
+  /// How often the stream can be refilled and looked up kLookUps times before its ends must be checked.
   std::size_t rounds() const {
     constexpr std::ptrdiff_t kMostValues = 2 * kLookUps;
     const std::ptrdiff_t bytes = std::max<std::ptrdiff_t>(end_ - at_ - 8, 0);
@@ -151,7 +154,7 @@ class Stream {
     std::memcpy(to_, &entry.values, sizeof entry.values);
     to_ += count;
   }
-  /// All that is left of the target. False where the bits end before.
+  /// Fills the rest of the target. False when the bits end too early.
   bool finish(const Table& table) {
     for (std::size_t i = rounds(); i > 0; i = i > 1 ? i - 1 : rounds()) {
       refill();
@@ -183,7 +186,7 @@ class Stream {
 };
 using Streams = std::array<Stream, kStreams>;
 
-/// All streams side by side, as far as none comes near its end: four chains of look-ups at once.
+/// Decodes all streams side by side, four chains of look-ups at once, until one of them comes near its end.
 inline __attribute__((always_inline)) void advanceTogether(const Table& table, Streams& streams) {
   Stream a = streams[0], b = streams[1], c = streams[2], d = streams[3];
   while (const std::size_t rounds = std::min({a.rounds(), b.rounds(), c.rounds(), d.rounds()}))
@@ -197,7 +200,7 @@ inline __attribute__((always_inline)) void advanceTogether(const Table& table, S
 void advancePlain(const Table& table, Streams& streams) { advanceTogether(table, streams); }
 STRATA_TARGET_BMI2 void advanceBmi2(const Table& table, Streams& streams) { advanceTogether(table, streams); }
 
-/// Value i of the four streams, `room` apart in `from`, to 4 i and on.
+/// Interleaves the streams, which are `room` values apart in `from`: their values i go to 4 i to 4 i + 3.
 void joinStreams(const std::uint8_t* from, std::size_t room, std::size_t values, std::uint8_t* to) {
   const std::uint8_t *const a = from, *const b = a + room, *const c = b + room, *const d = c + room;
   for (std::size_t i = 0; i < values / kStreams; ++i) {
@@ -214,7 +217,8 @@ void joinStreams(const std::uint8_t* from, std::size_t room, std::size_t values,
 HuffmanCode::HuffmanCode(const Histogram& counts) {
   Histogram scaled = counts;
   while (unlimitedLengths(scaled, lengths_) > kMostBits)
-    for (std::uint32_t& count : scaled) count = count > 0 ? (count >> 1 | 1u) : 0;  // flatter, until it fits
+    for (std::uint32_t& count : scaled)
+      count = count > 0 ? (count >> 1 | 1u) : 0;  // flatten the counts until the code fits
   assignCodes();
   for (std::size_t s = 0; s < 256; ++s) {
     payloadBits_ += std::size_t{counts[s]} * lengths_[s];
@@ -283,7 +287,7 @@ bool decodeHuffman(std::span<const std::byte> stored, std::span<std::uint8_t> ou
   Streams streams{Stream(rest.data(), sizes[0]), Stream(rest.data() + sizes[0], sizes[1]),
                   Stream(rest.data() + sizes[0] + sizes[1], sizes[2]),
                   Stream(rest.data() + sizes[0] + sizes[1] + sizes[2], rest.size() - sizes[0] - sizes[1] - sizes[2])};
-  // Each stream by itself at first, since they advance by one or two values at a time.
+  // The streams are decoded apart first, since they advance by one or two values at a time.
   constexpr std::size_t kRoom = 4096;
   std::uint8_t apart[kStreams * kRoom];
   for (std::size_t first = 0; first < out.size(); first += kStreams * kRoom) {

@@ -187,7 +187,7 @@ struct PointColour {
   int shift;
 };
 
-/// Where a record holds rgb and, in stores whose sources differ in it, the point's own colour shift.
+/// Reads rgb from records and, in stores whose sources differ in it, the colour shift of the point.
 struct ColourReader {
   explicit ColourReader(const NodeEncoding& node)
       : colourShift(node.info.colourShift), rgbAt(node.offset(node.info.layout.find(attribute::kRgb))) {

@@ -56,7 +56,7 @@ enum PlaneEncoding : std::uint16_t {
   kColumns = 3,   ///< columns of bytes, io/store/column_codec.h
 };
 
-/// Of the `bits` bits of an axis, the number that lie in position plane 0, 1 or 2.
+/// The number of bits in position plane 0, 1 or 2 of an axis that has `bits`.
 inline int planeBits(int bits, int plane) {
   if (plane == 0) return bits < 10 ? bits : 10;
   if (plane == 1) return bits < 10 ? 0 : bits < 20 ? bits - 10 : 10;

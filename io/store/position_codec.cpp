@@ -12,12 +12,12 @@
 namespace strata {
 namespace {
 
-/// What an occupied cell costs in bits, its byte packed.
+/// Bits that an occupied cell costs once its byte is packed.
 constexpr std::uint64_t kCellBits = 6;
 
 constexpr Lanes lane(std::uint32_t value, int axis) { return value << (10 * axis); }
 
-/// The children that an occupancy byte names, by ascending octant: their last bits in each lane.
+/// The last bits in each lane of the children that an occupancy byte names, by ascending octant.
 struct Children {
   Lanes octant[256][8];
   std::uint8_t count[256];
@@ -32,12 +32,12 @@ constexpr Children makeChildren() {
 }
 constexpr Children kChildren = makeChildren();
 
-/// Bits that an exhausted axis has too many in its lane.
+/// The number of bits that the lane of an exhausted axis has too many.
 int emptyBits(const PayloadHead& head, int axis, int depth) {
   return std::max(0, depth - head.start[axis] - head.bits[axis]);
 }
 
-/// How the lanes of a cell become the leading of its points' 10 bits.
+/// Turns the lanes of a cell into the leading bits of the 10 of its points.
 class CellLanes {
  public:
   CellLanes(const PayloadHead& head, int depth) {
@@ -68,7 +68,7 @@ std::uint64_t loadWord(const void* from) {
   return word;
 }
 
-/// Set bits from bit `first` to bit `end`; 8 bytes behind them are readable.
+/// Counts the set bits from bit `first` to bit `end`. 8 bytes behind them must be readable.
 std::size_t countBits(const std::uint8_t* bits, std::size_t first, std::size_t end) {
   std::size_t count = 0;
   for (std::size_t at = first; at < end; at += 56) {
@@ -159,7 +159,7 @@ void OctreeEncoder::clear() {
 }
 
 int OctreeEncoder::addLevel(const PayloadHead& head, std::span<const std::uint32_t> keys) {
-  // Neighbours that part at depth d are two cells from there on.
+  // Neighbouring points that part at depth d are in two cells from there on.
   std::uint64_t parts[kOctreeLevels + 1] = {};
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::uint32_t different = keys[i] ^ keys[i - 1];
@@ -190,7 +190,7 @@ void OctreeEncoder::describe(std::span<const std::uint32_t> keys, int depth) {
   }
   points_ += keys.size();
   depths_.push_back(static_cast<std::uint8_t>(depth));
-  // From the deepest level up, last cell first; reversed, that is breadth first.
+  // The order is from the deepest level up, last cell first, which is breadth first when it is reversed.
   reversed_.clear();
   std::reverse(cells_.begin(), cells_.end());
   for (int level = depth; level > 0; --level) {
@@ -237,7 +237,8 @@ bool OctreeDecoder::open(const PayloadHead& head, std::span<const std::uint32_t>
          takeColumn(rest_, std::span(columns_).subspan(occupancyBytes, flagBytes));
 }
 
-/// The occupied cells of the next level of the order, down to `depth`. False when they are more than `most`.
+/// Finds the occupied cells of the next level of the level order, down to `depth`. False when they are more than
+/// `most`.
 bool OctreeDecoder::expandCells(int depth, std::size_t most) {
   cells_.resize(std::max(cells_.size(), most + 8));
   spare_.resize(cells_.size());
@@ -259,7 +260,7 @@ bool OctreeDecoder::expandCells(int depth, std::size_t most) {
     count = to;
   }
   CellLanes(head_, depth).place(std::span(cells_).first(count));
-  // Every cell has a point that is the first in it, and so has the level.
+  // Every cell has a first point, and so has the level.
   const bool begins = (flags_[levelFirst_ / 8] >> (levelFirst_ & 7) & 1) != 0;
   return begins && countBits(flags_, levelFirst_, levelEnd_) == count;
 }

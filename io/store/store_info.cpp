@@ -70,7 +70,7 @@ Json attributesJson(const StoreInfo& info) {
   return attributes;
 }
 
-/// A double of a range may be written as null where the source held NaN or infinity.
+/// Reads a double of a range, which is null in the file when the source held NaN or infinity.
 double number(const Json& j) { return j.is_number() ? j.get<double>() : 0.0; }
 
 void readAttributes(const Json& j, StoreInfo& info) {

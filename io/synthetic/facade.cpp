@@ -8,7 +8,7 @@
 namespace strata::synthetic {
 namespace {
 
-/// How openings are laid out on a wall: a grid of `pitch` x `storey` metres with one opening a cell.
+/// The layout of the openings of a wall, one in each cell of a grid of `pitch` x `storey` metres.
 struct FacadeStyle {
   float pitch, storey;  ///< storey 0: one row over the whole height
   float halfWidth, sill, head;
@@ -73,7 +73,7 @@ Opening openingOf(const FacadeStyle& style, const WallCell& cell, std::uint32_t 
 
 constexpr float kFrameM = 0.07f;  // window frame
 
-/// Glass, frame and what shows behind; u and v within the opening.
+/// The surface of a pane, its frame included; u and v lie within the opening.
 Surface paneSurface(Material material, const Opening& opening, float u, float v, std::uint32_t seed) {
   const float fromEdge = std::min(std::min(u - opening.left, opening.right - u), v - opening.bottom);
   const float height = (v - opening.bottom) / (opening.top - opening.bottom);

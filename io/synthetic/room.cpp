@@ -43,7 +43,7 @@ void addDesk(SceneBuilder& b, const RoomPlan& room, float x, float y) {
   }
 }
 
-/// `facing` is the direction, along the room's y, that the back stands on.
+/// `facing` is the side of the seat, along the room's y, that has the back.
 void addChair(SceneBuilder& b, const RoomPlan& room, float x, float y, float facing) {
   const std::uint32_t seed = b.newSeed();
   b.block(room.at(x, y, 0.44f), {0.48f, 0.48f, 0.07f}, Material::fabric, seed);
@@ -54,7 +54,7 @@ void addChair(SceneBuilder& b, const RoomPlan& room, float x, float y, float fac
   b.block(room.at(x, y, 0.04f), {0.06f, 0.56f, 0.04f}, Material::rubber);
 }
 
-/// Bookcase with its back to the wall at x (facing east or west by `sign`), from y to y + width.
+/// A bookcase from y to y + width, whose back is at x and which faces east (sign 1) or west (sign -1).
 struct Bookcase {
   float x, y, width, sign;
 };
@@ -100,7 +100,7 @@ void addBin(SceneBuilder& b, const RoomPlan& room, float x, float y) {
   b.cone(room.at(x, y, 0.0f), {0.14f, 0.32f, 1.0f}, Material::metal, 9);
 }
 
-/// Something flat on the western (sign 1) or eastern (sign -1) wall.
+/// A flat object on the western (sign 1) or eastern (sign -1) wall.
 struct WallPanel {
   float sign, y, z, width, height;
 };

@@ -120,8 +120,9 @@ class SphereShape final : public Shape {
   std::uint64_t key_;
 };
 
-/// What breaks converters, by index modulo 10: 0 and 1 copies of one point, 2 and 3 on a line, 4 and 5 on a plane, 6 to
-/// 8 in a cube of 1 cm, 9 uniform in 100 m. From 1000 points on, ten of them lie up to 2000 km away.
+/// Points that break converters. Their index modulo 10 decides: 0 and 1 are copies of one point, 2 and 3 lie on a line,
+/// 4 and 5 on a plane, 6 to 8 in a cube of 1 cm, and 9 anywhere within 100 m. Of 1000 points or more, ten lie up to
+/// 2000 km away.
 class DegenerateShape final : public Shape {
  public:
   DegenerateShape(std::uint64_t points, std::uint64_t seed)

@@ -62,7 +62,7 @@ class PcdHeaderParser {
     return values;
   }
 
-  /// Three coordinates and a quaternion. What is wrong with them harms no point.
+  /// Takes three coordinates; a quaternion follows them. Errors in it are ignored, since they harm no point.
   void readViewpoint(const std::vector<std::string_view>& words) {
     glm::dvec3 at(0.0);
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -26,7 +26,7 @@ constexpr std::array<TypeName, 20> kTypes{
      {"double", ScalarType::f64}, {"float64", ScalarType::f64}, {"int64", ScalarType::i64},
      {"uint64", ScalarType::u64}, {"long", ScalarType::i64}}};
 
-/// Reads line by line; every fault names its line.
+/// Reads the header line by line, so that every error names its line.
 class PlyHeaderParser {
  public:
   PlyHeaderParser(const std::string& file, std::string_view head) : file_(file), lines_(file, head) {}

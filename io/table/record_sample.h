@@ -11,7 +11,7 @@
 
 namespace strata {
 
-/// What some of a file's records tell about all of them: the ranges of the fields and the digits of the coordinates.
+/// The ranges of the fields and the digits of the coordinates over some of a file's records.
 struct RecordSample {
   static constexpr int kManyDecimals = 10;
 

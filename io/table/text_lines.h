@@ -58,7 +58,7 @@ bool storeNumber(std::string_view token, ScalarType type, std::byte* out);
 enum class LineKind : std::uint8_t { point, blank, countLine };
 LineKind lineKind(std::string_view line, const TextTable& table);
 
-/// Where the point lines end that skipLines() passed over.
+/// The result of skipLines().
 struct SkippedLines {
   std::uint64_t end = 0;       ///< offset in the file of the line after them
   std::uint64_t points = 0;    ///< how many there were, blank lines not counted

@@ -20,7 +20,7 @@ constexpr unsigned kMostThreads = 16;
 constexpr std::uint64_t kStopLines = 4096;       ///< lines read between two looks at TextTable::stop
 constexpr std::size_t kMostCountLines = 100000;  ///< of one part
 
-/// A PTS line that says how many points follow.
+/// A PTS line that counts the points behind it.
 struct CountLine {
   std::uint64_t pointsBefore = 0;
   std::uint64_t promised = 0;
@@ -163,7 +163,7 @@ std::vector<PartSurvey> passInParallel(const ByteSource& bytes, const TextTable&
   std::atomic<bool> failed{false};
   const auto work = [&] {
     PartPass pass(bytes, table);
-    // Parts are taken in order and a taken part is finished, so the first fault of the file is always found.
+    // Parts are taken in order, and a part once taken is finished, so the first error of the file is always found.
     while (!failed) {
       const std::size_t part = next++;
       if (part >= parts.size()) return;

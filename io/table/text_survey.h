@@ -26,7 +26,7 @@ struct ColumnSurvey {
   int decimals = 0;      ///< most digits behind the decimal point, exponents counted in, zeros at the end left out
 };
 
-/// What one pass over a table finds.
+/// The findings of one pass over a table.
 struct TextSurvey {
   std::vector<TextPart> parts;
   std::vector<ColumnSurvey> columns;  ///< one for each column

@@ -1,5 +1,5 @@
-// What a node costs from its bytes to what is drawn, stage by stage, on one core. Every stage goes over the same nodes,
-// a few million points of a store.
+// Measures on one core, stage by stage, what it takes to turn the bytes of nodes into what is drawn. Every stage uses
+// the same nodes, with a few million points of a store.
 //
 // decode_bench STORE [Google Benchmark's options]
 #include <benchmark/benchmark.h>
@@ -25,11 +25,11 @@
 namespace strata {
 namespace {
 
-constexpr std::uint64_t kPoints = 3'000'000;  ///< of the nodes that are looked at
+constexpr std::uint64_t kPoints = 3'000'000;  ///< points of the nodes in the sample
 
 struct Plane {
   PlaneEncoding encoding{};
-  std::vector<std::byte> stored;  ///< and kBitSlack bytes
+  std::vector<std::byte> stored;  ///< with kBitSlack bytes behind it
   std::span<const std::byte> bytes() const { return std::span(stored).first(stored.size() - kBitSlack); }
 };
 
@@ -67,7 +67,7 @@ struct Sample {
   std::uint64_t points = 0;
 };
 
-/// Nodes from all over the hierarchy.
+/// Takes nodes from all over the hierarchy.
 Sample takeSample(const std::string& path) {
   Sample sample{std::make_unique<Store>(path), {}, 0};
   const Store& store = *sample.store;
@@ -87,7 +87,7 @@ Sample takeSample(const std::string& path) {
   return sample;
 }
 
-/// `stage` handles one node and says how many stored bytes it took.
+/// Measures a stage. `stage` handles one node and returns the number of stored bytes that it took.
 void overNodes(benchmark::State& state, const Sample& sample, const std::function<std::uint64_t(std::size_t)>& stage) {
   std::uint64_t bytes = 0;
   for (auto _ : state)
@@ -103,7 +103,7 @@ void must(bool decoded) {
   if (!decoded) throw Error("decode_bench", "a plane does not decode");
 }
 
-/// Stages of one plane: what `stage` is given is found before the clock runs.
+/// Measures a stage of one plane, which is found before the clock runs.
 void addPlane(const Sample& sample, const std::string& name, int id,
               const std::function<void(const Node&, const Plane&)>& stage) {
   auto planes = std::make_shared<std::vector<Plane>>();

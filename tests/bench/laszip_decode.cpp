@@ -1,5 +1,5 @@
-// How long LASzip itself takes to decode a file on one core, every point handed over and nothing done with it: the
-// yardstick for conversions of LAZ. Prints one JSON object.
+// Measures how long LASzip itself takes to decode a file on one core without using the points, as a yardstick for
+// conversions of LAZ. Prints one JSON object.
 #include <laszip/laszip_api.h>
 #include <sys/resource.h>
 

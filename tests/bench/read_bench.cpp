@@ -1,6 +1,6 @@
-// How nodes are best read: read_bench STORE [ROUNDS]
-// Every node's payload once, in a random order, by pread from several threads and by io_uring with several reads under
-// way, with the page cache emptied of the file before and with all of it there. Medians of the rounds, in turns.
+// read_bench STORE [ROUNDS] compares ways of reading nodes. It reads the payload of every node once, in a random order,
+// by pread from several threads and by io_uring with several reads under way; first with nothing of the file in the
+// page cache, then with all of it. The ways take turns, and the medians of the rounds are printed.
 #include <fcntl.h>
 #include <linux/io_uring.h>
 #include <sys/mman.h>
@@ -51,7 +51,7 @@ void byPread(int file, const Reads& reads, std::size_t largest, int threads) {
     });
 }
 
-/// Linux' two rings, by plain system calls (Axboe 2019, "Efficient IO with io_uring").
+/// The two rings of Linux's io_uring, by plain system calls (Axboe 2019, "Efficient IO with io_uring").
 class Ring {
  public:
   explicit Ring(unsigned depth) {
@@ -93,13 +93,13 @@ class Ring {
     std::atomic_ref(*tail_).store(tail + 1, std::memory_order_release);
     ++added_;
   }
-  /// Hands over what was added and waits for at least one to end.
+  /// Submits the reads that were added and waits for at least one to end.
   void wait() {
     if (::syscall(SYS_io_uring_enter, descriptor_, added_, 1, IORING_ENTER_GETEVENTS, nullptr, 0) < 0)
       throw posixError("io_uring", "waiting", errno);
     added_ = 0;
   }
-  /// The next that has ended: its slot and result. False when there is none.
+  /// Gives slot and result of the next read that has ended; false when there is none.
   bool take(std::uint64_t& slot, int& result) {
     const unsigned head = *doneHead_;
     if (head == std::atomic_ref(*doneTail_).load(std::memory_order_acquire)) return false;
@@ -149,7 +149,7 @@ void byRing(int file, const Reads& reads, std::size_t largest, unsigned depth) {
   }
 }
 
-/// Of all threads.
+/// The processor time of all threads.
 double cpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Way {

@@ -1,4 +1,4 @@
-// libFuzzer: no bytes may crash the LAS header decoder or what reads the records behind it.
+// libFuzzer: no bytes may crash the decoders of the LAS header and of the VLRs behind it.
 #include <cstring>
 #include <string>
 #include <vector>

@@ -1,4 +1,5 @@
-// Payload decoder against arbitrary bytes. Checksums are made right first, so that the fuzzer gets behind them.
+// libFuzzer: no bytes may crash the payload decoder. Their checksums are corrected first, so that the fuzzer gets past
+// them.
 #include <algorithm>
 #include <cstring>
 

@@ -27,7 +27,7 @@ class Memory final : public strata::ByteSource {
 
 }  // namespace
 
-/// Finds the layout, passes over the table and reads it: what openText does, but from memory.
+/// Finds the layout, surveys the table and reads it, as openText() does, but from memory.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   try {

@@ -68,7 +68,7 @@ std::vector<std::uint32_t> randomLevels(std::mt19937_64& random, std::size_t cou
   return levels;
 }
 
-/// Every point with its attributes as one string of bytes, those of one level sorted.
+/// Every point with its attributes as one string of bytes; the strings of one level are sorted.
 std::vector<std::string> pointsByLevel(const NodePoints& points, std::size_t stride,
                                        const std::vector<std::uint32_t>& levels) {
   std::vector<std::string> all;
@@ -124,7 +124,7 @@ TEST(NodeCodec, GivesBackThePointsOfEveryLevelBitForBit) {
 
 TEST(NodeCodec, KeepsColoursBesideOtherDrawnOnes) {
   std::mt19937_64 random(7);
-  for (const int style : {0, 1, 2}) {  // 16 bits, 8 bits repeated, 8 bits on top
+  for (const int style : {0, 1, 2}) {  // 16 bits; 8 bits in both bytes; 8 bits in the upper byte
     StoreInfo info;
     info.layout = PointLayout({{std::string(attribute::kRgb), ScalarType::u16, 3, "", 1.0, 0.0}});
     info.colourShift = 8;

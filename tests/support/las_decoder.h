@@ -6,12 +6,12 @@
 
 namespace strata::test {
 
-/// The records of a LAS or LAZ file in the file's order, through LASzip alone: none of the code under test.
-/// `scratch` is a folder for the uncompressed copy.
+/// Reads the records of a LAS or LAZ file in their order by LASzip alone, without the code under test. `scratch` is a
+/// folder for the uncompressed copy.
 LasFile decodeLas(const std::filesystem::path& path, const std::filesystem::path& scratch);
 
 /// Converts the scan, exports the store to LAS, and expects the same multiset of records, bit for bit.
-/// Also checks the oracle: the decoded records have the SHA-256 that EXPECTED.tsv states.
+/// It checks this decoder too: the records must have the SHA-256 that EXPECTED.tsv states.
 void expectRecordsComeBack(const RealScan& scan);
 
 }  // namespace strata::test

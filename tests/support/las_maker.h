@@ -16,7 +16,7 @@ namespace strata::test {
 /// Bytes of a point record of each LAS point data format, without extra bytes (LAS 1.4 R15, tables 7 to 23).
 inline constexpr std::array<std::uint16_t, 11> kLasRecordBytes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 
-/// A LAS file to be made: sound by default, every optional field is a way to lie.
+/// A LAS file to be made. It is correct by default, and every optional field makes it lie in one way.
 struct LasSpec {
   using Triple = std::array<double, 3>;
 
@@ -29,7 +29,7 @@ struct LasSpec {
   std::optional<Triple> claimedMin, claimedMax;
   std::optional<std::uint32_t> claimedDataOffset;
   std::optional<std::uint16_t> claimedRecordBytes;
-  std::optional<std::uint64_t> keepBytes;  ///< cuts the file off here
+  std::optional<std::uint64_t> keepBytes;  ///< the file is cut off behind so many bytes
 };
 
 namespace detail {
@@ -46,7 +46,7 @@ T get(const std::string& bytes, std::size_t at) {
 }
 }  // namespace detail
 
-/// The records get an intensity that counts up, so that no two of a file are equal unless it has over 65536.
+/// Makes the file. The intensities of the records count up, so that no two of at most 65536 records are equal.
 inline std::string lasBytes(const LasSpec& spec) {
   using detail::put;
   const std::uint16_t headerBytes = spec.versionMinor >= 4 ? 375 : spec.versionMinor == 3 ? 235 : 227;
@@ -103,7 +103,7 @@ inline void writeBytes(const std::filesystem::path& path, const std::string& byt
 
 inline void writeLas(const std::filesystem::path& path, const LasSpec& spec) { writeBytes(path, lasBytes(spec)); }
 
-/// An uncompressed LAS file, read without any of the code under test.
+/// An uncompressed LAS file that was read without the code under test.
 struct LasFile {
   int format = 0;
   std::uint16_t recordBytes = 0;

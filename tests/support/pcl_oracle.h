@@ -6,14 +6,14 @@
 
 namespace strata::test {
 
-/// A cloud as PCL's own readers see it.
+/// A cloud as PCL's own readers read it.
 struct PclCloud {
   std::uint64_t points = 0;
   std::vector<std::string> fields;
-  std::vector<std::vector<double>> values;  ///< one vector a field, its first component
+  std::vector<std::vector<double>> values;  ///< for each field the values of its first component
 };
 
-/// Nothing where PCL cannot read the file.
+/// Reads a file with PCL; nothing when PCL cannot.
 std::optional<PclCloud> readWithPcl(const std::string& path);
 
 }  // namespace strata::test

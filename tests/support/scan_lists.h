@@ -10,8 +10,9 @@
 
 namespace strata::test {
 
-/// The first `most` points of a scan as a render list: along the scan's own order in nodes of up to 30 000 points, kept
-/// to multiples of `step` metres. Points that are not finite are left out. Throws Error.
+/// The first `most` points of a scan as a render list. Its nodes follow the order of the scan with up to 30 000 points
+/// each, whose positions are rounded to multiples of `step` metres. Points that are not finite are left out. Throws
+/// Error.
 inline RenderList listOfScan(const std::string& input, std::size_t most, double step = 0.001) {
   std::vector<std::shared_ptr<const NodeData>> nodes;
   std::vector<glm::dvec3> points;

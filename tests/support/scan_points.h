@@ -15,7 +15,7 @@
 
 namespace strata::test {
 
-/// All points of a source, part by part in order.
+/// Reads all points of a source, part by part in order.
 inline PointBlock readSource(const PointSource& source, std::size_t blockPoints = 10000) {
   PointBlock all, block;
   for (std::size_t part = 0; part < source.partCount(); ++part) {
@@ -30,7 +30,7 @@ inline PointBlock readSource(const PointSource& source, std::size_t blockPoints 
   return all;
 }
 
-/// The same with one thread a part.
+/// Reads them with one thread per part.
 inline PointBlock readInParallel(const PointSource& source) {
   std::vector<PointBlock> parts(source.partCount());
   {
@@ -63,13 +63,13 @@ inline Box boundsOf(const PointBlock& points) {
   return box;
 }
 
-/// Equal to the bit, so that NaN equals itself.
+/// Compares bit by bit, so that NaN equals itself.
 inline bool sameBits(const PointBlock& a, const PointBlock& b) {
   return a.count() == b.count() && a.attributes == b.attributes &&
          std::memcmp(a.positions.data(), b.positions.data(), a.count() * sizeof(glm::dvec3)) == 0;
 }
 
-/// Component `k` of an attribute of one point.
+/// The value of component `k` of an attribute of one point.
 inline double valueOf(const PointSource& source, const PointBlock& points, std::size_t point, std::string_view name,
                       std::size_t k = 0) {
   const PointLayout& layout = source.info().layout;
@@ -91,7 +91,7 @@ struct ExpectedScan {
   std::string min, max, first, last;  ///< "x,y,z" with as many digits as are known
 };
 
-/// Those whose path starts with `prefix`.
+/// The lines whose path starts with `prefix`.
 inline std::vector<ExpectedScan> expectedScans(std::string_view prefix) {
   std::ifstream file(dataFolder() / "EXPECTED.tsv");
   std::vector<ExpectedScan> scans;
@@ -109,7 +109,7 @@ inline std::vector<ExpectedScan> expectedScans(std::string_view prefix) {
   return scans;
 }
 
-/// Compares to the digits that the text has: half of its last digit, and a bit for rounding.
+/// Compares a number with a text, to half a unit of its last digit and a little more for rounding.
 inline void expectPosition(std::string text, const glm::dvec3& found, const std::string& what) {
   std::erase(text, '[');
   std::erase(text, ']');
@@ -131,7 +131,7 @@ inline void expectPosition(std::string text, const glm::dvec3& found, const std:
   }
 }
 
-/// Count, bounds, first and last point as EXPECTED.tsv has them, and what SourceInfo says of them.
+/// Expects the count, the bounds, and the first and last point of EXPECTED.tsv, and a SourceInfo that agrees with them.
 inline void expectScan(const ExpectedScan& expected, const PointSource& source) {
   SCOPED_TRACE(expected.file);
   const SourceInfo& info = source.info();

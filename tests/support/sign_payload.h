@@ -10,7 +10,7 @@
 
 namespace strata::test {
 
-/// Makes the planes' checksums right, so that what is wrong with them reaches the decoders.
+/// Corrects the checksums of damaged planes, so that the damage reaches the decoders.
 inline void signPayload(std::vector<std::byte>& payload, std::size_t headBytes) {
   PayloadHead head;
   if (headBytes < sizeof head) return;

@@ -1,5 +1,5 @@
-// Every input that can go wrong, through the programs: the exit code, the one line on stderr, and that nothing
-// half-made carries the store's name.
+// Runs the programs with every input that can go wrong, and expects the exit code, one line on stderr, and no
+// incomplete folder with the store's name.
 #include <sys/mount.h>
 #include <unistd.h>
 
@@ -202,7 +202,7 @@ TEST_F(BadInput, AnUnreadableFolderIsNamed) {
   fs::permissions(closed, fs::perms::all);
 }
 
-/// A file system with little room, for as long as it lives.
+/// A file system with little room, which exists as long as the object.
 class SmallDisk {
  public:
   SmallDisk(const fs::path& at, const char* size) : at_(at) {

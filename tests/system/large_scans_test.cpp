@@ -1,4 +1,4 @@
-// The longest round trips: a file of four million points and the 119 tiles it was made from, one by one.
+// The longest round trips: a file of four million points, and the 119 tiles that it was made from one by one.
 #include "tests/support/las_decoder.h"
 #include "tests/support/real_scans.h"
 

@@ -1,4 +1,4 @@
-// Scans that are odd but sound: they convert, and every coordinate comes through.
+// Scans that are odd but correct are converted, and every coordinate comes through.
 #include <algorithm>
 #include <fstream>
 #include <limits>
@@ -14,7 +14,7 @@ class OddInput : public testing::Test {
     writeLas(folder_ / "scan.las", spec);
     return (folder_ / "scan.las").string();
   }
-  /// Converts, checks the store, exports, and expects the very records of the input.
+  /// Converts a scan, checks the store, exports it, and expects exactly the records of the input.
   void expectRoundTrip(const LasSpec& spec, const std::vector<std::string>& options = {}) const {
     const std::string input = las(spec);
     const Json result = mustConvert({input}, folder_ / "out.strata", options);
@@ -28,7 +28,7 @@ class OddInput : public testing::Test {
     EXPECT_EQ(after.offset, before.offset);
     EXPECT_TRUE(after.sortedRecords() == before.sortedRecords());
   }
-  /// Bounds that strata-info states, against those of the points.
+  /// Compares the bounds that strata-info prints with those of the points.
   void expectTightBounds(const LasSpec& spec) const {
     const Json bounds = mustInfo(folder_ / "out.strata").at("bounds");
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -195,7 +195,7 @@ TEST_F(OddInput, ChunksBehindTheCountedPointsAreWarnedOf) {
   ASSERT_EQ(runProgram("strata-export", {(folder_ / "city.strata").string(), "-o", laz, "--format", "7"}).exitCode, 0);
   EXPECT_EQ(runProgram("strata-convert", {laz, "-o", (folder_ / "all.strata").string()}).err.find("more behind them"),
             std::string::npos);
-  const std::uint64_t counted = 60000;  // of three chunks of at most 50,000
+  const std::uint64_t counted = 60000;  // lie in three chunks of at most 50,000
   std::fstream header(laz, std::ios::binary | std::ios::in | std::ios::out);
   header.seekp(247);  // LAS 1.4: the number of point records
   header.write(reinterpret_cast<const char*>(&counted), sizeof counted);

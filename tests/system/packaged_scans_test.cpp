@@ -1,4 +1,4 @@
-// Real scans that Debian's package libcgal-demo carries, for machines without the larger set.
+// Real scans from Debian's package libcgal-demo, for machines without the larger set.
 #include <cstdlib>
 
 #include "tests/support/programs.h"

@@ -1,4 +1,4 @@
-// Real scans that others made, against the counts and bounds that independent programs found in them.
+// Real scans have the counts and bounds that independent programs found in them.
 #include "tests/support/real_scans.h"
 #include "tests/support/las_decoder.h"
 #include "tests/support/programs.h"
@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// E57, PTX and files that are damaged, empty or no scans; the last one is sound but for its last record.
+/// E57, PTX, and files that are damaged, empty or no scans. The last one lacks only its last record.
 bool mustBeRefused(const RealScan& scan) {
   return scan.points == 0 || scan.ending() == ".e57" || scan.ending() == ".ptx" ||
          scan.file == "las/edge/1.2-with-color-clipped.las";

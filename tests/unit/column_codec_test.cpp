@@ -19,7 +19,7 @@ HuffmanCode::Histogram countsOf(const Values& values) {
   return counts;
 }
 
-/// Symbols as rare as Fibonacci numbers, which an unlimited code gives a bit more each.
+/// Counts that are Fibonacci numbers, so that a code without a limit gives each rarer symbol one more bit.
 Values fibonacciValues(int symbols) {
   Values values;
   std::size_t count = 1, before = 1;

@@ -37,7 +37,7 @@ glm::dvec3 parseVector(const std::string& text) {
   return v;
 }
 
-/// What a whole read of a file gives.
+/// The results of reading a whole file.
 struct Summary {
   std::uint64_t points = 0;
   Box bounds;
@@ -83,7 +83,7 @@ void expectNear(const glm::dvec3& found, const std::string& expected, const char
   EXPECT_NEAR(found.z, wanted.z, 0.51e-6 + std::abs(wanted.z) * 0.51e-8) << what;
 }
 
-/// The table has what can be read of these two; their headers claim 1065 points.
+/// The headers of these two claim 1065 points; the table has the number that can be read.
 bool isCutShort(const std::string& name) {
   return name == "las/edge/1.2-no-points.las" || name == "las/edge/1.2-with-color-clipped.las";
 }

@@ -27,7 +27,7 @@ struct RandomStore {
   StoreInfo info;
   NodePoints points;
   Box bounds;
-  std::vector<std::byte> records;  ///< as they must stand in the file
+  std::vector<std::byte> records;  ///< as the file must have them
 };
 
 RandomStore randomStore(const LasRecordFormat& format, std::size_t count, std::uint64_t seed) {
@@ -61,7 +61,7 @@ RandomStore randomStore(const LasRecordFormat& format, std::size_t count, std::u
   return store;
 }
 
-/// The records of the whole file, as they stand or would stand uncompressed.
+/// The uncompressed records of the whole file.
 std::vector<std::byte> recordsOf(const PointSource& source) {
   const LasMeta& meta = *source.info().las;
   const LasRecordFormat format{meta.pointFormat, meta.recordBytes};
@@ -304,7 +304,7 @@ TEST(DamagedLaz, WithBytesFlippedIsReadOrRefused) {
     for (int round = 0; round < 300; ++round) {
       std::string bytes = sound;
       for (int flips = 1 + static_cast<int>(random() % 4); flips > 0; --flips) {
-        // Half of them in the header, its records and the chunk table.
+        // Half of the changes are in the header, its VLRs and the chunk table.
         const std::size_t at = random() % 3 == 0   ? random() % 900
                                : random() % 3 == 0 ? bytes.size() - 1 - random() % 40
                                                    : random() % bytes.size();

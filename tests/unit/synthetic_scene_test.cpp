@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t kPoints = 1'000'000;
 
-/// The first surface by trying every object: no grid.
+/// Finds the first surface by trying every object, without the grid.
 Hit bruteForce(const Scene& scene, const Ray& ray) {
   Hit hit;
   if (ray.direction.z < 0.0f) hit.t = -ray.origin.z / ray.direction.z;
@@ -75,7 +75,7 @@ TEST(SyntheticScene, HitsRoofsAndConesWhereTheirFormulasSay) {
   }
 }
 
-/// No point may have a solid object between itself and its scanner. Leaves let rays through, windows lie up to 30 cm
+/// No solid object may lie between a point and its scanner. Leaves let rays through, windows lie up to 30 cm
 /// behind the wall that carries them, and rounding to the grid may put a point just behind a surface that is seen at a
 /// grazing angle.
 void expectNothingHidden(const ScannerScan& scan, std::uint64_t step) {
@@ -105,7 +105,7 @@ TEST(SyntheticCity, ShowsNoPointThatItsScannerCannotSee) { expectNothingHidden(*
 TEST(SyntheticRoom, ShowsNoPointThatItsScannerCannotSee) { expectNothingHidden(*makeRoom(kPoints, 1), 97); }
 
 /// Rays are even in azimuth and elevation, so within the open crossing the counts in rings around a scanner must be
-/// proportional to the rings' elevations: the law of Station, integrated.
+/// proportional to the elevations that the rings span, which is the law of Station integrated.
 TEST(SyntheticCity, ThinsOutOnTheGroundAsAnEvenMirrorDoes) {
   const auto scan = makeCity(kPoints, 1);
   std::vector<ShapePoint> points(kPoints);
