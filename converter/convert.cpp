@@ -21,6 +21,7 @@
 #include "converter/options.h"
 #include "converter/survey/survey.h"
 #include "core/error.h"
+#include "core/version.h"
 #include "io/open_scans.h"
 #include "io/store/store_files.h"
 
@@ -173,7 +174,7 @@ void checkCounts(const Sources& sources, const ConvertOptions& options, Distribu
 StoreInfo storeInfo(const Sources& sources, const ConvertOptions& options, const Survey& frame,
                     const Distribution& all) {
   StoreInfo info;
-  info.program = std::string("strata ") + STRATA_VERSION;
+  info.program = "strata " + version();
   info.points = all.points;
   info.bounds.min = frame.grid.offset + frame.grid.scale * all.bounds.min;
   info.bounds.max = frame.grid.offset + frame.grid.scale * all.bounds.max;

@@ -6,6 +6,7 @@
 
 #include "converter/journal/record_bytes.h"
 #include "core/error.h"
+#include "core/version.h"
 
 namespace strata {
 namespace {
@@ -24,7 +25,7 @@ ConversionTerms::Input inputOf(const SourceInfo& info) {
 
 ConversionTerms termsOf(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& options) {
   ConversionTerms terms;
-  terms.options = {{"the program", std::string("strata ") + STRATA_VERSION},
+  terms.options = {{"the program", "strata " + version()},
                    {"--memory", std::to_string(options.memoryBytes)},
                    {"--node-points", std::to_string(options.nodePoints)},
                    {"--sampling", samplingName(options.sampling)},

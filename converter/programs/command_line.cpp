@@ -3,11 +3,12 @@
 #include <CLI/CLI.hpp>
 
 #include "core/error.h"
+#include "core/version.h"
 
 namespace strata {
 
 bool parseCommandLine(CLI::App& app, int argc, char** argv) {
-  app.set_version_flag("--version", STRATA_VERSION);
+  app.set_version_flag("--version", version());
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {

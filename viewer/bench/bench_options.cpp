@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/version.h"
 #include "render/create_rasterizer.h"
 #include "viewer/session/command_line.h"
 
@@ -95,7 +96,7 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
   BenchOptions options;
   RawOptions raw;
   CLI::App app{"Plays a camera path over a store and measures it.", "strata-bench"};
-  app.set_version_flag("--version", std::string("strata-bench ") + STRATA_VERSION);
+  app.set_version_flag("--version", "strata-bench " + version());
   addRunOptions(app, options, raw);
   CLI::App* compare = app.add_subcommand("compare", "ratios of the measures of two runs");
   compare->add_option("A", options.reportA, "folder or report.json of the first run")->required();

@@ -14,6 +14,7 @@
 #include "core/log.h"
 #include "core/percentile.h"
 #include "core/readable.h"
+#include "core/version.h"
 #include "io/file/text_file.h"
 #include "viewer/bench/jump_watch.h"
 #include "viewer/bench/page_cache.h"
@@ -328,8 +329,8 @@ BenchReport runBench(const BenchOptions& options) {
   draw.edl = options.edl;
 
   BenchReport report;
-  report.program = std::string("strata-bench ") + STRATA_VERSION;
-  report.commit = STRATA_COMMIT;
+  report.program = "strata-bench " + version();
+  report.commit = commit();
   report.when = utcNow();
   report.storePath = options.store;
   report.storeName = storeName(options.store);

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 
 #include "render/create_rasterizer.h"
+#include "core/version.h"
 #include "viewer/session/command_line.h"
 #include "viewer/window/viewer_app.h"
 
@@ -11,7 +12,7 @@ std::optional<ViewerOptions> parseViewerOptions(int argc, const char* const* arg
   std::string backend = "auto", size = "1280x800", pictureSize = "4096x2560";
   bool noEdl = false;
   CLI::App app{"Flies through stores.", "strata-view"};
-  app.set_version_flag("--version", std::string("strata-view ") + STRATA_VERSION);
+  app.set_version_flag("--version", "strata-view " + version());
   app.add_option("stores", options.stores,
                  "one or more stores, NAME.strata, shown as layers; scans, which are converted first; or a project")
       ->required();
