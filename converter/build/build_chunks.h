@@ -1,25 +1,17 @@
 #pragma once
-#include "converter/build/merge.h"
-#include "converter/distribute/distribute.h"
+#include <vector>
+
+#include "converter/build/build_context.h"
+#include "converter/build/node_sink.h"
+#include "converter/distribute/chunks.h"
+#include "converter/journal/conversion.h"
 
 namespace strata {
 
-/// What the journal keeps of a finished chunk.
-struct ChunkRecord {
-  std::uint64_t index = 0;  ///< of its bucket
-  NodeSink::Written written;
-  ChunkTop top;
-};
-void appendChunk(Journal& journal, const ChunkRecord& chunk);
-/// All that the journal found, in order.
-std::vector<ChunkRecord> readChunks(const Journal& journal);
-/// Where the points of a chunk's top node wait; of one record.
-Spill::Handle readChunkTop(const Journal& journal, const Journal::Place& place);
-
-/// Builds the chunks of all buckets, as many at a time as there are threads and have `pointsAtOnce` points together or
-/// one more, and writes them in order, behind those that `found` has of an interrupted conversion.
-std::vector<ChunkTop> buildChunks(const BuildFrame& frame, const Distribution& all, std::vector<ChunkRecord> found,
-                                  std::uint64_t pointsAtOnce, const ConvertOptions& options, Workspace work,
-                                  NodeSink& sink, const ConvertControl& control);
+/// Builds all chunks and writes their nodes in the order of the chunks, behind the chunks that `found` has of an
+/// interrupted conversion. As many chunks are built at the same time as there are threads and `context.pointsAtOnce`
+/// allows. Returns the tops of all chunks, in their order. Throws Error and Stopped.
+std::vector<ChunkTop> buildChunks(const Conversion& conversion, const BuildContext& context, const Distribution& all,
+                                  std::vector<ChunkRecord> found, NodeSink& sink);
 
 }  // namespace strata

@@ -17,9 +17,9 @@ constexpr std::uint16_t kSpread[8] = {0, 1, 8, 9, 64, 65, 72, 73};
 
 using CellStarts = std::array<std::size_t, (1u << (3 * kLevels)) + 1>;
 
-/// The cell of each point, and where the cells begin.
+/// Finds the cell of each point three levels down, and where the cells begin.
 template <typename Coordinate>
-void findCells(const CellFrame& cell, std::size_t stride, std::span<const std::byte> points, std::uint16_t* cells,
+void findCells(const CellCoordinates& cell, std::size_t stride, std::span<const std::byte> points, std::uint16_t* cells,
                CellStarts& starts) {
   for (std::size_t i = 0; i * stride < points.size(); ++i) {
     Coordinate grid[3];
@@ -35,7 +35,8 @@ void findCells(const CellFrame& cell, std::size_t stride, std::span<const std::b
 }
 
 template <typename Coordinate>
-void arrangeAs(const CellFrame& cell, std::size_t stride, std::span<const std::byte> points, ChunkScratch& scratch) {
+void arrangeAs(const CellCoordinates& cell, std::size_t stride, std::span<const std::byte> points,
+               ChunkScratch& scratch) {
   const std::size_t count = points.size() / stride;
   CellStarts starts{};
   std::uint16_t* cells = scratch.tree.ranks.room(count).data();
@@ -73,19 +74,23 @@ void Columns::room(std::size_t count) {
   record.room(count);
 }
 
-void arrange(const BuildFrame& frame, const CellFrame& cell, std::span<const std::byte> points, ChunkScratch& scratch) {
-  const std::size_t count = points.size() / frame.format.stride();
+void arrange(const BuildContext& context, const CellCoordinates& cell, std::span<const std::byte> points,
+             ChunkScratch& scratch) {
+  const std::size_t count = points.size() / context.format.stride();
   scratch.records.room(points.size());
   for (Columns& columns : scratch.columns) columns.room(count);
-  if (frame.format.wide)
-    arrangeAs<std::int64_t>(cell, frame.format.stride(), points, scratch);
+  if (context.format.wide)
+    arrangeAs<std::int64_t>(cell, context.format.stride(), points, scratch);
   else
-    arrangeAs<std::uint32_t>(cell, frame.format.stride(), points, scratch);
+    arrangeAs<std::uint32_t>(cell, context.format.stride(), points, scratch);
 }
 
-std::array<std::size_t, 9> divide(const Columns& from, std::size_t begin, std::size_t end, int bit,
-                                  std::span<const std::uint32_t> kept, Buffer<std::uint8_t>& octants, Columns& to) {
-  std::uint8_t* octant = octants.data();
+std::array<std::size_t, 9> divide(ChunkScratch& scratch, int side, PointRange range, int bit,
+                                  std::span<const std::uint32_t> kept) {
+  const auto [begin, end] = range;
+  const Columns& from = scratch.columns[side];
+  Columns& to = scratch.columns[1 - side];
+  std::uint8_t* octant = scratch.octants.data();
   findOctants(from, begin, end, bit, octant);
   for (const std::uint32_t i : kept) octant[begin + i] = 8;
   std::array<std::size_t, 9> counts{};
@@ -93,7 +98,7 @@ std::array<std::size_t, 9> divide(const Columns& from, std::size_t begin, std::s
   std::array<std::size_t, 9> starts;
   starts[0] = begin;
   for (std::size_t o = 0; o < 8; ++o) starts[o + 1] = starts[o] + counts[o];
-  // What is kept goes behind the others, where nobody looks: cheaper than a branch.
+  // Kept points go behind the others, where nobody looks: that is cheaper than a branch.
   std::array<std::size_t, 9> next = starts;
   for (std::size_t i = begin; i < end; ++i) {
     const std::size_t at = next[octant[i]]++;
@@ -105,7 +110,7 @@ std::array<std::size_t, 9> divide(const Columns& from, std::size_t begin, std::s
 
 std::unique_ptr<ChunkScratch> ScratchPool::lend() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (!free_.empty()) {
       std::unique_ptr<ChunkScratch> scratch = std::move(free_.back());
       free_.pop_back();
@@ -116,7 +121,7 @@ std::unique_ptr<ChunkScratch> ScratchPool::lend() {
 }
 
 void ScratchPool::giveBack(std::unique_ptr<ChunkScratch> scratch) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (free_.size() < kMostKept) free_.push_back(std::move(scratch));
 }
 

@@ -3,53 +3,62 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
-#include "converter/build/node_builder.h"
+#include "converter/build/build_context.h"
 #include "converter/build/ntree.h"
 #include "converter/memory/buffer.h"
+#include "core/mutex.h"
+#include "io/store/node_codec.h"
 
 namespace strata {
 
-/// Positions and where the records are, apart from these: what moves on the way down the tree.
+/// The part of a chunk's points that moves on the way down the tree: positions, and where the records lie.
 struct Columns {
-  Buffer<std::int32_t> axis[3];  ///< as LocalPoints has them
-  Buffer<std::uint32_t> record;
+  Buffer<std::int32_t> axis[3];  ///< local integers, as LocalPoints has them
+  Buffer<std::uint32_t> record;  ///< index into ChunkScratch::records
 
   void room(std::size_t count);
 };
 
-/// What building a chunk holds for all of its points; worth keeping from chunk to chunk.
+/// The memory for building a chunk, worth keeping from chunk to chunk.
 struct ChunkScratch {
   Buffer<std::byte> records;     ///< packed, in the order of the cells three levels down
   Columns columns[2];            ///< used in turn by level
-  Buffer<std::uint8_t> octants;  ///< of the points that are being divided; 8: stays in the node
+  Buffer<std::uint8_t> octants;  ///< of the points that are being divided; 8 = the point stays in the node
   TreeScratch tree;
   NodePoints node;
   EncodeScratch encode;
 };
 
 /// Fills `records`, and `columns[0]` along with them, from packed points in any order.
-void arrange(const BuildFrame& frame, const CellFrame& cell, std::span<const std::byte> points, ChunkScratch& scratch);
+void arrange(const BuildContext& context, const CellCoordinates& cell, std::span<const std::byte> points,
+             ChunkScratch& scratch);
 
-/// Moves the points [begin, end) of `from` that are not in `kept` (places in that range) to `to`, sorted by octant
-/// and otherwise in their order. `bit` of a coordinate tells octants apart. Returns where each octant begins, and at
-/// index 8 where the last one ends.
-std::array<std::size_t, 9> divide(const Columns& from, std::size_t begin, std::size_t end, int bit,
-                                  std::span<const std::uint32_t> kept, Buffer<std::uint8_t>& octants, Columns& to);
+/// Consecutive points of Columns.
+struct PointRange {
+  std::size_t begin = 0, end = 0;
 
-/// Lends scratches, as many as are asked for at the same time, and keeps a few for the next. Thread-safe.
+  std::size_t count() const { return end - begin; }
+};
+
+/// Moves the points of a range of columns[side] that are not in `kept` (indices into the range) to the same range of
+/// columns[1 - side], sorted by octant and otherwise in their order. `bit` of a coordinate tells octants apart. Returns
+/// where each octant begins, and at index 8 where the last one ends.
+std::array<std::size_t, 9> divide(ChunkScratch& scratch, int side, PointRange range, int bit,
+                                  std::span<const std::uint32_t> kept);
+
+/// Lends any number of scratches at the same time and keeps a few for the next to ask. Thread-safe.
 class ScratchPool {
  public:
   static constexpr std::size_t kMostKept = 4;
-  std::unique_ptr<ChunkScratch> lend();
-  void giveBack(std::unique_ptr<ChunkScratch> scratch);
+  std::unique_ptr<ChunkScratch> lend() STRATA_EXCLUDES(mutex_);
+  void giveBack(std::unique_ptr<ChunkScratch> scratch) STRATA_EXCLUDES(mutex_);
 
  private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<ChunkScratch>> free_;  ///< guarded by mutex_
+  Mutex mutex_;
+  std::vector<std::unique_ptr<ChunkScratch>> free_ STRATA_GUARDED_BY(mutex_);
 };
 
 }  // namespace strata

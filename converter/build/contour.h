@@ -2,46 +2,23 @@
 #include <array>
 #include <cstdint>
 
-#include "core/box.h"
-#include "io/store/store.h"
+#include "converter/subtree_shape.h"
 
 namespace strata {
 
-/// Count, mean and scatter matrix of points; merges without losing digits (Chan, Golub and LeVeque 1983).
-struct Moments {
-  double count = 0.0;
-  glm::dvec3 mean{0.0};
-  std::array<double, 6> scatter{};  ///< sums of (xx, xy, xz, yy, yz, zz) about the mean
-
-  void add(const glm::dvec3& point);
-  void add(const Moments& other);
-};
-
-/// c_l, c_p, c_s of Kanzok 2015, eq. 1, and the principal axes, longest first.
+/// How stretched points are, by Kanzok 2015, eq. 1.
 struct Anisotropy {
-  double linear = 0.0, planar = 0.0, spherical = 1.0;
+  double linear = 0.0, planar = 0.0, spherical = 1.0;  ///< his c_l, c_p and c_s
+  /// The principal axes, of unit length, longest first.
   std::array<glm::dvec3, 3> axes{glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)};
 };
 Anisotropy anisotropy(const Moments& moments);
 
-/// Kanzok 2015, 3.1: volumetric where c_s > 0.03, else planar where c_p > 0.03, else linear.
+/// Classifies by Kanzok 2015, 3.1: volumetric if c_s > 0.03, planar if only c_p > 0.03, linear otherwise.
 ContourClass classify(const Anisotropy& anisotropy);
 
-/// What an ancestor has to know of a subtree: its points' moments and the box around all of them.
-/// Deviation from Kanzok: a contour bounds the whole subtree, not only the node's own points, so that culling a node
-/// may cull its children (docs/decisions/0002-contours-bound-subtrees.md).
-struct SubtreeShape {
-  Moments moments;
-  Box box;  ///< axis-aligned, world
-  ContourClass contourClass = ContourClass::volumetric;
-  glm::dvec3 centre{0.0};                ///< of the contour
-  std::array<glm::dvec3, 3> halfAxes{};  ///< orthogonal
-
-  std::array<glm::dvec3, 8> corners() const;
-};
-
-/// The shape of a node: `moments` and `box` are of the whole subtree already; `visit` calls its argument for points
-/// whose convex hull holds the subtree.
+/// Fits the contour of a subtree around its principal axes. `moments` and `box` are those of the whole subtree, world;
+/// `visit(see)` calls `see` with points whose convex hull holds the subtree.
 template <typename Visit>
 SubtreeShape fitContour(const Moments& moments, const Box& box, Visit&& visit) {
   SubtreeShape shape;

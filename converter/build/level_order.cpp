@@ -11,13 +11,14 @@ namespace {
 
 using RankCounts = std::array<std::uint32_t, NTree::kRanks>;
 
-/// What is kept of each rank: all up to `cut`, of that one `share` of `full`.
+/// The rank at which the capacity is reached: all points of lower ranks are kept, and `share` of the `full` points of
+/// this rank.
 struct Cut {
   std::uint16_t rank = NTree::kRanks - 1;
   std::uint32_t share = 0, full = 0;
 };
 
-/// Counts what is kept of each rank; finds where the capacity is reached.
+/// Lowers `counts` from the points of each rank to those that are kept.
 Cut cutAt(std::size_t capacity, RankCounts& counts) {
   Cut cut;
   std::size_t kept = 0;
@@ -34,7 +35,7 @@ Cut cutAt(std::size_t capacity, RankCounts& counts) {
   return cut;
 }
 
-/// Prefix counts of the levels.
+/// Fills in the prefixes of the levels.
 void countLevels(const RankCounts& counts, LevelOrder& out) {
   std::uint32_t sum = 0;
   const auto total = static_cast<std::uint32_t>(out.order.size());
@@ -46,7 +47,8 @@ void countLevels(const RankCounts& counts, LevelOrder& out) {
   if (out.prefix.empty() || out.prefix.back() != total) out.prefix.push_back(total);
 }
 
-/// Side of the cells of the finest level that the points fill at least twice, narrowed to what they are filled with.
+/// The side of the cells on the finest level that has at least two kept points per cell, scaled down to the side of a
+/// cell with one.
 double spacingOf(const NTree& tree, const RankCounts& counts, std::size_t kept) {
   std::size_t cells = 1, sum = 0;
   int level = 0;
@@ -71,7 +73,6 @@ LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScrat
   }
   const NTree tree = buildTree(points, capacity, scratch);
   out.moments = tree.moments;
-  out.rootSide = tree.rootSide;
   RankCounts counts{};
   for (const std::uint16_t rank : tree.ranks) ++counts[rank];
   const Cut cut = cutAt(capacity, counts);
@@ -83,7 +84,7 @@ LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScrat
     kept += counts[rank];
   }
   out.order.resize(kept);
-  std::uint64_t share = 0;  // reaches cut.full every cut.full / cut.share points
+  std::uint64_t share = 0;  // exceeds cut.full once in cut.full / cut.share points
   for (std::size_t i = 0; i < tree.ranks.size(); ++i) {
     const std::uint16_t rank = tree.ranks[i];
     if (rank > cut.rank) continue;
@@ -97,6 +98,22 @@ LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScrat
   countLevels(counts, out);
   out.spacing = spacingOf(tree, counts, kept);
   return out;
+}
+
+std::vector<std::uint32_t> representedBy(const TreeScratch& scratch, std::size_t count,
+                                         std::span<const std::uint32_t> order) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::vector<std::uint32_t> by(count, kNone);
+  for (std::size_t k = 0; k < order.size(); ++k) by[order[k]] = static_cast<std::uint32_t>(k);
+  const auto point = [&](std::size_t entry) { return static_cast<std::uint32_t>(scratch.entries[entry]); };
+  // A cell of the n-tree is a range of entries, and its representative the first of them.
+  std::uint32_t current = kNone;
+  for (std::size_t i = 0; i < count && current == kNone; ++i) current = by[point(i)];
+  for (std::size_t i = 0; i < count; ++i) {
+    if (by[point(i)] != kNone) current = by[point(i)];
+    by[point(i)] = current;
+  }
+  return by;
 }
 
 }  // namespace strata

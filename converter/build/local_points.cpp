@@ -1,6 +1,7 @@
 #include "converter/build/local_points.h"
 
 #include <algorithm>
+#include <array>
 
 #include "converter/memory/vector4.h"
 

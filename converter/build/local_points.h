@@ -3,26 +3,27 @@
 #include <cstdint>
 #include <span>
 
-#include "converter/build/contour.h"
+#include "converter/subtree_shape.h"
 
 namespace strata {
 
-/// Points of one cube as integers of 0 to 2^31 - 1, one array an axis: exact, and half the size of doubles.
+/// Points of one cell as local integers of 0 to 2^31 - 1, one array per axis: exact, and half the size of doubles.
 struct LocalPoints {
   std::span<const std::int32_t> axis[3];
-  glm::dvec3 step{1.0};  ///< metres an integer stands for, by axis
+  glm::dvec3 step{1.0};  ///< metres between two integers, by axis
 
   std::size_t count() const { return axis[0].size(); }
 };
 
-/// Smallest and largest integer of each axis; `points` has at least one point.
+/// The smallest and the largest integer of each axis.
 struct LocalBounds {
   glm::ivec3 low{0}, high{0};
 };
+/// `points` has at least one point.
 LocalBounds boundsOf(const LocalPoints& points);
 
-/// Moments in metres about the cube's lower corner. Sums of 512 points are single precision about the middle of
-/// `bounds`, the sums of those double: seven digits, always in the same order.
+/// The moments in metres about the cell's lower corner. Points are summed up by 512 in single precision about the
+/// middle of `bounds`, and these sums in double precision, always in the same order: seven digits are right.
 Moments momentsOf(const LocalPoints& points, const LocalBounds& bounds);
 
 }  // namespace strata

@@ -9,27 +9,27 @@
 
 namespace strata {
 
-/// What a kept point is drawn as when it stands for others.
+/// The points that a kept point represents.
 struct Represented {
-  std::uint32_t colour = 0;  ///< R | G << 8 | B << 16
-  std::uint32_t points = 1;  ///< that it stands for, itself included
+  std::uint32_t colour = 0;  ///< their mean, R | G << 8 | B << 16
+  std::uint32_t points = 1;  ///< their number, the point itself included
 };
 
-/// Where a store's layout has the colour that points are drawn in.
+/// Finds the colour that points are drawn in.
 class DrawColour {
  public:
   explicit DrawColour(const StoreInfo& info);
   bool exists() const { return rgb_ >= 0; }
-  /// R | G << 8 | B << 16 of an attribute record.
+  /// The colour of an attribute record, R | G << 8 | B << 16.
   std::uint32_t of(const std::byte* record) const;
 
  private:
-  int rgb_, ownShift_;  ///< offsets in a record, -1: none
-  int shift_;
+  int rgb_, ownShift_;  ///< offsets in an attribute record; -1 = it has none
+  int shift_;           ///< of all points, where they have none of their own
 };
 
-/// Weighted means, one for each of `kept` points: `of(i)` is the Represented of point i, `by[i]` which one stands for
-/// it.
+/// The weighted means for `kept` points: `of(i)` is the Represented of point i, and `by[i]` the kept point that
+/// represents it.
 template <typename Of>
 std::vector<Represented> averaged(std::span<const std::uint32_t> by, std::size_t kept, Of&& of) {
   struct Sum {

@@ -8,6 +8,7 @@
 
 #include "converter/build/chunk_builder.h"
 #include "converter/build/in_order.h"
+#include "converter/build/level_order.h"
 #include "converter/build/lod_colour.h"
 
 namespace strata {
@@ -16,7 +17,7 @@ namespace {
 /// A node whose points its parent may still take.
 struct OpenNode {
   NodeKey key;
-  std::vector<std::byte> points;  ///< topPointStride() bytes each
+  std::vector<std::byte> points;  ///< BuildContext::topPointStride() bytes each
   std::vector<SubtreeShape> children;
 };
 
@@ -33,17 +34,18 @@ void forEachChild(NodeKey cell, Tops first, Tops last, See&& see) {
   }
 }
 
+/// Builds the nodes of one cell above the chunks. Used by one thread.
 class Merger {
  public:
-  Merger(const BuildFrame& frame, const Spill& spill, const ConvertControl& control, ChunkScratch& scratch)
-      : frame_(frame), stride_(topPointStride(frame)), spill_(spill), control_(control), scratch_(scratch) {}
+  Merger(const Conversion& conversion, const BuildContext& context, ChunkScratch& scratch)
+      : conversion_(conversion), context_(context), stride_(context.topPointStride()), scratch_(scratch) {}
 
-  /// The top node of a cell, from the tops inside it.
+  /// Makes the top node of a cell from the tops inside it.
   OpenNode merge(NodeKey cell, Tops first, Tops last) {
-    control_.checkStop();
+    conversion_.control.checkStop();
     if (first->key == cell) {
       OpenNode top{cell, {}, std::move(first->children)};
-      spill_.get(first->points, top.points);
+      conversion_.spill.get(first->points, top.points);
       return top;
     }
     std::vector<OpenNode> children;
@@ -52,20 +54,19 @@ class Merger {
     return takeFromChildren(cell, std::move(children));
   }
 
-  /// Finishes the node as it is; returns its shape.
+  /// Finishes the node with the points that are left in it, and returns its shape.
   SubtreeShape close(const OpenNode& node) {
-    const CellFrame cell(frame_, node.key);
+    const CellCoordinates cell(context_, node.key);
     std::vector<std::int32_t> columns[3];
-    const LevelOrder levels =
-        sampleNode(frame_.sampling, localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_.tree);
-    Moments moments = cell.world(levels.moments);
+    const LevelOrder order = levelOrder(localPoints(cell, {&node, 1}, columns), LevelOrder::kAll, scratch_.tree);
+    Moments moments = cell.world(order.moments);
     for (const SubtreeShape& child : node.children) moments.add(child.moments);
     NodePoints points;
-    gather(frame_, node.points.data(), stride_, levels.order, points);
-    if (frame_.averages() && !node.children.empty())
-      for (const std::uint32_t i : levels.order)
+    gather(context_, node.points.data(), stride_, order.order, points);
+    if (context_.averages() && !node.children.empty())
+      for (const std::uint32_t i : order.order)
         points.drawColours.push_back(representedAt(node.points.data() + i * stride_).colour);
-    FinishedNode finished = finishNode(frame_, node.key, points, levels, moments, node.children, scratch_.encode);
+    FinishedNode finished = finishNode(context_, {node.key, points, order, moments, node.children}, scratch_.encode);
     finished_.push_back(std::move(finished.node));
     return finished.shape;
   }
@@ -74,46 +75,47 @@ class Merger {
 
  private:
   /// The own points of all `nodes`, one after the other, in `columns`.
-  LocalPoints localPoints(const CellFrame& cell, std::span<const OpenNode> nodes,
+  LocalPoints localPoints(const CellCoordinates& cell, std::span<const OpenNode> nodes,
                           std::vector<std::int32_t> (&columns)[3]) const {
-    for (const OpenNode& node : nodes) appendLocal(frame_, cell, node.points, stride_, columns);
+    for (const OpenNode& node : nodes) appendLocal(context_, cell, node.points, stride_, columns);
     return {{columns[0], columns[1], columns[2]}, cell.step};
   }
 
   OpenNode takeFromChildren(NodeKey key, std::vector<OpenNode> children) {
-    const CellFrame cell(frame_, key);
+    const CellCoordinates cell(context_, key);
     std::vector<std::int32_t> columns[3];
     const LocalPoints points = localPoints(cell, children, columns);
     // Half at most, so that a chain of only children does not empty the lower ones.
     const std::size_t capacity =
-        std::min<std::size_t>(frame_.info.nodePoints, std::max<std::size_t>(points.count() / 2, 1));
-    const LevelOrder levels = sampleNode(frame_.sampling, points, capacity, scratch_.tree);
+        std::min<std::size_t>(context_.info.nodePoints, std::max<std::size_t>(points.count() / 2, 1));
+    const LevelOrder order = levelOrder(points, capacity, scratch_.tree);
     std::vector<Represented> represented;
-    if (frame_.averages()) {
+    if (context_.averages()) {
       std::vector<Represented> all;
       for (const OpenNode& child : children)
         for (std::size_t at = 0; at < child.points.size(); at += stride_)
           all.push_back(representedAt(child.points.data() + at));
-      represented = averaged(representedBy(scratch_.tree, all.size(), levels.order), levels.order.size(),
+      represented = averaged(representedBy(scratch_.tree, all.size(), order.order), order.order.size(),
                              [&](std::size_t i) { return all[i]; });
     }
-    OpenNode parent{key, std::vector<std::byte>(levels.order.size() * stride_), {}};
-    std::vector<std::uint32_t> place(points.count(), kLeft);
-    for (std::size_t i = 0; i < levels.order.size(); ++i) place[levels.order[i]] = static_cast<std::uint32_t>(i);
-    std::size_t global = 0;
+    OpenNode parent{key, std::vector<std::byte>(order.order.size() * stride_), {}};
+    // A point goes to the parent, or stays with its child: the others move together there.
+    std::vector<std::uint32_t> inParent(points.count(), kStays);
+    for (std::size_t i = 0; i < order.order.size(); ++i) inParent[order.order[i]] = static_cast<std::uint32_t>(i);
+    std::size_t index = 0;  // among the points of all children
     for (OpenNode& child : children) {
       std::size_t to = 0;
-      for (std::size_t at = 0; at < child.points.size(); at += stride_, ++global) {
+      for (std::size_t at = 0; at < child.points.size(); at += stride_, ++index) {
         const std::byte* record = child.points.data() + at;
-        if (place[global] == kLeft) {
+        if (inParent[index] == kStays) {
           std::memmove(child.points.data() + to, record, stride_);
           to += stride_;
           continue;
         }
-        std::byte* kept = parent.points.data() + place[global] * stride_;
+        std::byte* kept = parent.points.data() + inParent[index] * stride_;
         std::memcpy(kept, record, stride_);
-        if (frame_.averages())
-          std::memcpy(kept + frame_.format.stride(), &represented[place[global]], sizeof(Represented));
+        if (context_.averages())
+          std::memcpy(kept + context_.format.stride(), &represented[inParent[index]], sizeof(Represented));
       }
       child.points.resize(to);
       if (!child.points.empty() || !child.children.empty()) parent.children.push_back(close(child));
@@ -123,16 +125,15 @@ class Merger {
 
   Represented representedAt(const std::byte* record) const {
     Represented one;
-    std::memcpy(&one, record + frame_.format.stride(), sizeof one);
+    std::memcpy(&one, record + context_.format.stride(), sizeof one);
     return one;
   }
 
-  static constexpr std::uint32_t kLeft = 0xffffffff;  ///< in no parent
+  static constexpr std::uint32_t kStays = 0xffffffff;  ///< with its child
 
-  const BuildFrame& frame_;
-  const std::size_t stride_;
-  const Spill& spill_;
-  const ConvertControl& control_;
+  const Conversion& conversion_;
+  const BuildContext& context_;
+  const std::size_t stride_;  ///< of a top point
   ChunkScratch& scratch_;
   std::vector<BuiltNode> finished_;
 };
@@ -159,48 +160,69 @@ void findGroups(NodeKey cell, Tops first, Tops last, std::vector<Group>& groups)
                  [&](NodeKey child, Tops begin, Tops end) { findGroups(child, begin, end, groups); });
 }
 
-struct MergedGroup {
-  OpenNode top;
-  std::vector<BuiltNode> nodes;
+/// The groups of one round as pieces of work. The last round has one group, which becomes the root.
+class GroupWork {
+ public:
+  struct Piece {
+    OpenNode top;
+    std::vector<BuiltNode> nodes;
+  };
+
+  GroupWork(const Conversion& conversion, const BuildContext& context, std::vector<Group> groups, NodeSink& sink)
+      : conversion_(conversion), context_(context), groups_(std::move(groups)), sink_(sink) {}
+
+  bool isLastRound() const { return groups_.size() == 1; }
+  std::size_t count() const { return groups_.size(); }
+  std::vector<ChunkTop> takeTops() { return std::move(merged_); }
+
+  std::uint64_t points(std::size_t index) const { return groups_[index].bytes() / context_.topPointStride(); }
+  Piece begin(std::size_t) { return {}; }
+  void build(std::size_t index, Piece& piece) {
+    const Group& group = groups_[index];
+    if (isUnchanged(group)) return;
+    std::unique_ptr<ChunkScratch> scratch = scratches_.lend();
+    Merger merger(conversion_, context_, *scratch);
+    piece.top = merger.merge(group.cell, group.first, group.last);
+    if (isLastRound()) merger.close(piece.top);
+    piece.nodes = merger.takeFinished();
+    scratches_.giveBack(std::move(scratch));
+  }
+  void finish(std::size_t index, Piece& piece) {
+    const Group& group = groups_[index];
+    sink_.write(std::move(piece.nodes));
+    if (isLastRound()) return;
+    if (isUnchanged(group))
+      merged_.push_back(std::move(*group.first));
+    else
+      merged_.push_back({group.cell, conversion_.spill.put(piece.top.points), std::move(piece.top.children)});
+  }
+
+ private:
+  /// A single top has nothing to be merged with in this round.
+  bool isUnchanged(const Group& group) const { return !isLastRound() && group.last - group.first == 1; }
+
+  const Conversion& conversion_;
+  const BuildContext& context_;
+  const std::vector<Group> groups_;
+  ScratchPool scratches_;
+
+  // Used by finish() alone.
+  NodeSink& sink_;
+  std::vector<ChunkTop> merged_;
 };
 
 }  // namespace
 
-void mergeChunks(const BuildFrame& frame, std::vector<ChunkTop> tops, std::uint64_t pointsAtOnce, int threads,
-                 Spill& spill, NodeSink& sink, const ConvertControl& control) {
-  ScratchPool scratches;
-  for (bool root = false; !root;) {
+void mergeChunks(const Conversion& conversion, const BuildContext& context, std::vector<ChunkTop> tops,
+                 NodeSink& sink) {
+  for (bool done = false; !done;) {
     std::vector<Group> groups;
     findGroups(NodeKey{}, tops.begin(), tops.end(), groups);
-    root = groups.size() == 1;
-    std::vector<ChunkTop> merged;
-    InOrder<MergedGroup> cells;
-    cells.pointsAtOnce = pointsAtOnce;
-    cells.end = groups.size();
-    cells.size = [&](std::size_t index) { return groups[index].bytes() / topPointStride(frame); };
-    cells.begin = [](std::size_t) { return MergedGroup{}; };
-    cells.build = [&](std::size_t index, MergedGroup& out) {
-      const Group& group = groups[index];
-      if (!root && group.last - group.first == 1) return;
-      std::unique_ptr<ChunkScratch> scratch = scratches.lend();
-      Merger merger(frame, spill, control, *scratch);
-      out.top = merger.merge(group.cell, group.first, group.last);
-      if (root) merger.close(out.top);
-      out.nodes = merger.takeFinished();
-      scratches.giveBack(std::move(scratch));
-    };
-    cells.finish = [&](std::size_t index, MergedGroup& out) {
-      const Group& group = groups[index];
-      sink.write(std::move(out.nodes));
-      if (root) return;
-      if (group.last - group.first == 1) {
-        merged.push_back(std::move(*group.first));
-        return;
-      }
-      merged.push_back({group.cell, spill.put(out.top.points), std::move(out.top.children)});
-    };
-    cells.run(static_cast<std::size_t>(threads));
-    tops = std::move(merged);
+    GroupWork work(conversion, context, std::move(groups), sink);
+    InOrder<GroupWork> round(work, 0, work.count(), context.pointsAtOnce);
+    round.run(static_cast<std::size_t>(conversion.options.threads));
+    done = work.isLastRound();
+    tops = work.takeTops();
   }
 }
 

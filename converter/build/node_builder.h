@@ -4,49 +4,16 @@
 #include <span>
 #include <vector>
 
-#include "converter/build/contour.h"
-#include "converter/build/sampling.h"
-#include "converter/distribute/packed_points.h"
+#include "converter/build/build_context.h"
+#include "converter/build/level_order.h"
+#include "converter/journal/records.h"
 #include "io/store/node_codec.h"
-#include "io/store/store.h"
 
 namespace strata {
 
-/// What all node building needs to know; constant over a conversion.
-struct BuildFrame {
-  StoreInfo info;  ///< layout, grid, cubeBits, colourShift and nodePoints are set
-  PackedFormat format;
-  Sampling sampling = Sampling::ntree;
-  LodColour lodColour = LodColour::first;
-
-  /// Nodes with children have colours of their own to be drawn in.
-  bool averages() const { return lodColour == LodColour::average && info.layout.find(attribute::kRgb) >= 0; }
-  glm::dvec3 position(const std::int64_t (&grid)[3]) const {
-    return info.grid.offset + info.grid.scale * glm::dvec3(grid[0], grid[1], grid[2]);
-  }
-};
-
-/// How grid integers become the LocalPoints of a cell: seen from its corner, and halved until 31 bits hold them.
-struct CellFrame {
-  CellFrame(const BuildFrame& frame, NodeKey cell);
-
-  std::int64_t inside;   ///< mask of the bits below the cell's corner
-  int bits;              ///< of a local integer: the cell spans 2^bits
-  int shift;             ///< local = (grid & inside) >> shift
-  glm::dvec3 corner{0};  ///< world
-  glm::dvec3 step{1};    ///< metres a local integer stands for
-
-  std::int32_t local(std::int64_t grid) const { return static_cast<std::int32_t>((grid & inside) >> shift); }
-  /// Moments about the corner as LevelOrder has them, in world coordinates.
-  Moments world(Moments moments) const {
-    moments.mean += corner;
-    return moments;
-  }
-};
-
-/// A node ready to be written.
+/// A node that is ready to be written.
 struct BuiltNode {
-  NodeRecord record{};  ///< all but firstChild, childMask and offset; of a slice, firstChild is its number until linked
+  WrittenNode node;  ///< without the offset of its payload
   std::vector<std::byte> payload;
 };
 
@@ -56,18 +23,23 @@ struct FinishedNode {
   SubtreeShape shape;
 };
 
-/// Appends the positions of packed records, which stand `stride` bytes apart, to `columns`, in the cell's integers.
-void appendLocal(const BuildFrame& frame, const CellFrame& cell, std::span<const std::byte> records, std::size_t stride,
-                 std::vector<std::int32_t> (&columns)[3]);
+/// Appends the positions of packed records, which lie `stride` bytes apart, to `columns`, in the cell's local integers.
+void appendLocal(const BuildContext& context, const CellCoordinates& cell, std::span<const std::byte> records,
+                 std::size_t stride, std::vector<std::int32_t> (&columns)[3]);
 
-/// Replaces `out` by copies of packed records, `which` of them in this order. They stand `stride` bytes apart.
-void gather(const BuildFrame& frame, const std::byte* records, std::size_t stride, std::span<const std::uint32_t> which,
-            NodePoints& out);
+/// Replaces `out` by the packed records with the indices `which`, in this order. The records lie `stride` bytes apart.
+void gather(const BuildContext& context, const std::byte* records, std::size_t stride,
+            std::span<const std::uint32_t> which, NodePoints& out);
 
-/// Packs and describes a node. `points` stand in the order that `levels` describes (may be none); their own levels are
-/// set where the codec may sort inside them. `moments` are of the points and everything below, world; `children` are
-/// the shapes of the node's subtrees.
-FinishedNode finishNode(const BuildFrame& frame, NodeKey key, NodePoints& points, const LevelOrder& levels,
-                        const Moments& moments, std::span<const SubtreeShape> children, EncodeScratch& scratch);
+/// The parts of a node.
+struct NodeParts {
+  NodeKey key;
+  NodePoints& points;  ///< in the order of `order`; may be none. finishNode() sets their levels
+  const LevelOrder& order;
+  Moments moments;                         ///< of the points and everything below, world
+  std::span<const SubtreeShape> children;  ///< of the node's subtrees
+};
+/// Encodes a node and describes it by its record. `scratch` is storage to be used again.
+FinishedNode finishNode(const BuildContext& context, const NodeParts& parts, EncodeScratch& scratch);
 
 }  // namespace strata

@@ -12,69 +12,70 @@ namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{8} << 20;
 
-/// Number of a record in its chain of slices; 0 for ordinary nodes.
-std::uint32_t sliceNumber(const NodeRecord& record) { return record.firstChild; }
-
-/// A slice is a level below what it continues.
-int depthOf(const NodeRecord& record) { return NodeKey{record.key}.level() + static_cast<int>(sliceNumber(record)); }
+/// The depth in the tree. A slice lies a level below the slice or node that it continues.
+int depthOf(const WrittenNode& node) { return NodeKey{node.record.key}.level() + static_cast<int>(node.slice); }
 
 /// Breadth first: by depth, then by the cell's lower corner in Morton order, which cells of one depth never share.
-bool standsBefore(const NodeRecord& a, const NodeRecord& b) {
+bool comesBefore(const WrittenNode& a, const WrittenNode& b) {
   const int depthA = depthOf(a), depthB = depthOf(b);
   if (depthA != depthB) return depthA < depthB;
-  const auto corner = [](const NodeRecord& record) {
-    const int level = NodeKey{record.key}.level();
-    return (record.key ^ std::uint64_t{1} << (3 * level)) << (3 * (NodeKey::kDeepestLevel - level));
+  const auto corner = [](const WrittenNode& node) {
+    const int level = NodeKey{node.record.key}.level();
+    return (node.record.key ^ std::uint64_t{1} << (3 * level)) << (3 * (NodeKey::kDeepestLevel - level));
   };
   return corner(a) < corner(b);
 }
 
-/// Puts the records in breadth-first order, so that the children of a node are neighbours.
-Hierarchy linkBreadthFirst(std::vector<NodeRecord> records) {
-  std::sort(records.begin(), records.end(), standsBefore);
-  std::vector<std::uint32_t> slices(records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) slices[i] = std::exchange(records[i].firstChild, 0);
+/// Puts the nodes in breadth-first order, in which the children of a node are neighbours and come in the order of their
+/// parents, and links them.
+Hierarchy linkBreadthFirst(std::vector<WrittenNode> nodes) {
+  std::sort(nodes.begin(), nodes.end(), comesBefore);
   std::size_t parent = 0;
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const bool slice = slices[i] > 0;
-    const std::uint64_t parentKey = slice ? records[i].key : records[i].key >> 3;
-    while (records[parent].key != parentKey || slices[parent] != (slice ? slices[i] - 1 : 0)) ++parent;
-    if (records[parent].childMask == 0) records[parent].firstChild = static_cast<std::uint32_t>(i);
-    const auto octant = static_cast<unsigned>(slice ? 0 : records[i].key & 7);
-    records[parent].childMask = static_cast<std::uint8_t>(records[parent].childMask | 1u << octant);
-    records[parent].sliced = slice ? 1 : 0;
+  for (std::size_t i = 1; i < nodes.size(); ++i) {
+    const bool isSlice = nodes[i].slice > 0;
+    const std::uint64_t parentKey = isSlice ? nodes[i].record.key : nodes[i].record.key >> 3;
+    const std::uint32_t parentSlice = isSlice ? nodes[i].slice - 1 : 0;
+    while (nodes[parent].record.key != parentKey || nodes[parent].slice != parentSlice) ++parent;
+    NodeRecord& record = nodes[parent].record;
+    if (record.childMask == 0) record.firstChild = static_cast<std::uint32_t>(i);
+    const auto octant = static_cast<unsigned>(isSlice ? 0 : nodes[i].record.key & 7);
+    record.childMask = static_cast<std::uint8_t>(record.childMask | 1u << octant);
+    record.sliced = isSlice ? 1 : 0;
   }
-  return {std::move(records)};
+  Hierarchy hierarchy;
+  hierarchy.nodes.reserve(nodes.size());
+  for (const WrittenNode& node : nodes) hierarchy.nodes.push_back(node.record);
+  return hierarchy;
 }
 
-/// Node by node: each payload's checksum is the seed of the next.
-std::uint64_t checksumOf(const OutputFile& file, const std::vector<NodeRecord>& nodes) {
+/// As WrittenChunk::checksum, of the payloads in the file.
+std::uint64_t checksumOf(const OutputFile& file, const std::vector<WrittenNode>& nodes) {
   std::vector<std::byte> payload;
   std::uint64_t sum = 0;
-  for (const NodeRecord& node : nodes) {
-    payload.resize(node.payloadBytes);
-    file.readAt(node.offset, payload);
+  for (const WrittenNode& node : nodes) {
+    payload.resize(node.record.payloadBytes);
+    file.readAt(node.record.offset, payload);
     sum = checksum(payload, sum);
   }
   return sum;
 }
 
-/// How many of the chunks are in points.bin as they were written.
-std::size_t soundChunks(const std::string& path, std::span<const NodeSink::Written> chunks) {
+/// Counts the chunks that are in points.bin as they were written, up to the first that is not.
+std::size_t soundChunks(const std::string& path, std::span<const WrittenChunk> chunks) {
   std::error_code failure;
   const std::uint64_t bytes = std::filesystem::file_size(path, failure);
   if (failure || chunks.empty()) return 0;
   const OutputFile file(path, std::min(chunks.back().end, bytes));
   std::size_t sound = 0;
   while (sound < chunks.size() && chunks[sound].end <= file.size() &&
-         checksumOf(file, chunks[sound].records) == chunks[sound].checksum)
+         checksumOf(file, chunks[sound].nodes) == chunks[sound].checksum)
     ++sound;
   return sound;
 }
 
 }  // namespace
 
-NodeSink::NodeSink(const std::string& folder, std::span<const Written> chunks)
+NodeSink::NodeSink(const std::string& folder, std::span<const WrittenChunk> chunks)
     : chunksFound_(soundChunks(folder + "/" + kPointsFile, chunks)) {
   if (chunksFound_ > 0) {
     file_ = std::make_unique<OutputFile>(folder + "/" + kPointsFile, chunks[chunksFound_ - 1].end);
@@ -83,9 +84,9 @@ NodeSink::NodeSink(const std::string& folder, std::span<const Written> chunks)
     const PointsHeader header = pointsHeader();
     file_->append(std::as_bytes(std::span(&header, 1)));
   }
-  for (const Written& chunk : chunks.first(chunksFound_))
-    records_.insert(records_.end(), chunk.records.begin(), chunk.records.end());
-  chunkBegin_ = records_.size();
+  for (const WrittenChunk& chunk : chunks.first(chunksFound_))
+    nodes_.insert(nodes_.end(), chunk.nodes.begin(), chunk.nodes.end());
+  chunkBegin_ = nodes_.size();
 }
 
 void NodeSink::flush() {
@@ -94,29 +95,29 @@ void NodeSink::flush() {
 }
 
 void NodeSink::write(std::vector<BuiltNode> nodes) {
-  for (BuiltNode& node : nodes) {
-    node.record.offset = bytes();
-    chunkChecksum_ = checksum(node.payload, chunkChecksum_);
-    buffer_.insert(buffer_.end(), node.payload.begin(), node.payload.end());
-    records_.push_back(node.record);
+  for (BuiltNode& built : nodes) {
+    built.node.record.offset = bytes();
+    chunkChecksum_ = checksum(built.payload, chunkChecksum_);
+    buffer_.insert(buffer_.end(), built.payload.begin(), built.payload.end());
+    nodes_.push_back(built.node);
     if (buffer_.size() >= kBufferBytes) flush();
   }
 }
 
-NodeSink::Written NodeSink::endChunk() {
+WrittenChunk NodeSink::endChunk() {
   flush();
-  Written out;
+  WrittenChunk out;
   out.end = bytes();
   out.checksum = std::exchange(chunkChecksum_, 0);
-  out.records.assign(records_.begin() + static_cast<std::ptrdiff_t>(chunkBegin_), records_.end());
-  chunkBegin_ = records_.size();
+  out.nodes.assign(nodes_.begin() + static_cast<std::ptrdiff_t>(chunkBegin_), nodes_.end());
+  chunkBegin_ = nodes_.size();
   return out;
 }
 
 Hierarchy NodeSink::finish() {
   flush();
   file_->finish();
-  return linkBreadthFirst(std::move(records_));
+  return linkBreadthFirst(std::move(nodes_));
 }
 
 }  // namespace strata

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "converter/build/contour.h"
 #include "converter/memory/vector4.h"
 
 namespace strata {
@@ -16,26 +17,26 @@ constexpr int kDigits = 3;  // of the radix sort: 30 key bits
 constexpr std::size_t kDigitValues = std::size_t{1} << kDigitBits;
 constexpr std::uint32_t kThird = 0x15555555;  // 0101... in 30 bits: the aim points, seen from the root
 
-/// The frame in which cells are squares or cubes.
-struct TreeFrame {
+/// The principal axes of a node's points, along which the cells of its n-tree are squares or cubes.
+struct PrincipalAxes {
   int levelBits = 3;  ///< log2 n
   int levels = 10;    ///< of a key
   glm::ivec3 middle{0};
-  std::array<glm::dvec3, 3> axes;  ///< units: root sides a local integer
+  std::array<glm::dvec3, 3> axes;  ///< root sides per local integer
 };
 
-TreeFrame fitFrame(const LocalPoints& points, const LocalBounds& bounds, NTree& tree) {
+PrincipalAxes fitAxes(const LocalPoints& points, const LocalBounds& bounds, NTree& tree) {
   const Anisotropy shape = anisotropy(tree.moments);
   tree.shape = classify(shape);
-  TreeFrame frame;
-  frame.levelBits = tree.shape == ContourClass::volumetric ? 3 : tree.shape == ContourClass::planar ? 2 : 1;
-  frame.levels = frame.levelBits == 3 ? 10 : frame.levelBits == 2 ? 15 : 24;
-  frame.middle = bounds.low + (bounds.high - bounds.low) / 2;
+  PrincipalAxes out;
+  out.levelBits = tree.shape == ContourClass::volumetric ? 3 : tree.shape == ContourClass::planar ? 2 : 1;
+  out.levels = out.levelBits == 3 ? 10 : out.levelBits == 2 ? 15 : 24;
+  out.middle = bounds.low + (bounds.high - bounds.low) / 2;
   const glm::dvec3 half = (glm::dvec3(bounds.high - bounds.low) * 0.5 + 1.0) * points.step;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(frame.levelBits); ++k)
+  for (std::size_t k = 0; k < static_cast<std::size_t>(out.levelBits); ++k)
     tree.rootSide = std::max(tree.rootSide, 2.0 * glm::dot(glm::abs(shape.axes[k]), half));
-  for (std::size_t k = 0; k < 3; ++k) frame.axes[k] = shape.axes[k] * points.step / tree.rootSide;
-  return frame;
+  for (std::size_t k = 0; k < 3; ++k) out.axes[k] = shape.axes[k] * points.step / tree.rootSide;
+  return out;
 }
 
 /// Puts one zero bit after each of the low 15 bits.
@@ -66,15 +67,15 @@ std::uint32_t interleave(int levelBits, const std::uint32_t (&cell)[3]) {
   return levelBits == 1 ? cell[0] : levelBits == 2 ? interleave<2>(cells)[0] : interleave<3>(cells)[0];
 }
 
-/// Keys of four points, given their places from the middle of the frame.
+/// Makes the keys of four points, given their positions from the middle.
 template <int kLevelBits>
 class KeyMaker {
  public:
-  explicit KeyMaker(const TreeFrame& frame)
-      : most_(std::ldexp(1.0f, frame.levels) - 1.0f), aim_(kThird >> (30 - frame.levels)) {
+  explicit KeyMaker(const PrincipalAxes& principal)
+      : most_(std::ldexp(1.0f, principal.levels) - 1.0f), aim_(kThird >> (30 - principal.levels)) {
     for (std::size_t k = 0; k < kLevelBits; ++k)
-      for (int i = 0; i < 3; ++i) axes_[k][i] = static_cast<float>(std::ldexp(frame.axes[k][i], frame.levels));
-    half_ = std::ldexp(0.5f, frame.levels);
+      for (int i = 0; i < 3; ++i) axes_[k][i] = static_cast<float>(std::ldexp(principal.axes[k][i], principal.levels));
+    half_ = std::ldexp(0.5f, principal.levels);
   }
   Uint4 operator()(const Float4& x, const Float4& y, const Float4& z) const {
     Uint4 cell[3] = {};
@@ -95,8 +96,8 @@ class KeyMaker {
 };
 
 template <int kLevelBits>
-void makeKeys(const LocalPoints& points, const TreeFrame& frame, std::uint64_t* entries) {
-  const KeyMaker<kLevelBits> keys(frame);
+void makeKeys(const LocalPoints& points, const PrincipalAxes& principal, std::uint64_t* entries) {
+  const KeyMaker<kLevelBits> keys(principal);
   const std::size_t count = points.count();
   for (std::size_t i = 0; i < count; i += 4) {
     Int4 at[3] = {};
@@ -107,8 +108,8 @@ void makeKeys(const LocalPoints& points, const TreeFrame& frame, std::uint64_t* 
       else
         std::memcpy(&at[axis], from, (count - i) * sizeof *from);
     }
-    const Uint4 key =
-        keys(toFloats(at[0] - frame.middle.x), toFloats(at[1] - frame.middle.y), toFloats(at[2] - frame.middle.z));
+    const Uint4 key = keys(toFloats(at[0] - principal.middle.x), toFloats(at[1] - principal.middle.y),
+                           toFloats(at[2] - principal.middle.z));
     for (std::size_t lane = 0; lane < 4 && i + lane < count; ++lane)
       entries[i + lane] = static_cast<std::uint64_t>(key[lane]) << 32 | (i + lane);
   }
@@ -136,8 +137,8 @@ void sortEntries(std::size_t count, Buffer<std::uint64_t>& entries, Buffer<std::
   }
 }
 
-/// Which pass a new point belongs to, by its own digit and the one above (lines: two above). Points far from the
-/// cell's representative come first, in every second or fourth cell first.
+/// The pass that a new point belongs to, by its own digit and the digit above (of lines, two above). Points far from
+/// the cell's representative come first, and of these those in every second or fourth cell.
 std::array<std::uint8_t, 64> passTable(int levelBits) {
   constexpr std::uint8_t kLine[8] = {0, 0, 0, 2, 0, 1, 0, 3};
   constexpr std::uint8_t kPlaneChild[4] = {0, 1, 2, 0}, kPlaneParent[4] = {0, 2, 3, 1};
@@ -157,15 +158,15 @@ std::uint16_t rankBeyond(std::size_t i) {
   return static_cast<std::uint16_t>(NTree::kBeyond * NTree::kPasses + kPasses[i % 16]);
 }
 
-/// The rank of a point whose key first differs from the one before in bit `bit`.
+/// Finds the rank of a point from the highest bit in which its key differs from the key before.
 struct Ranker {
-  explicit Ranker(const TreeFrame& frame, int firstLevel = 0) : table(passTable(frame.levelBits)) {
-    mask = frame.levelBits == 1 ? 7 : frame.levelBits == 2 ? 15 : 63;
+  explicit Ranker(const PrincipalAxes& principal, int firstLevel = 0) : table(passTable(principal.levelBits)) {
+    mask = principal.levelBits == 1 ? 7 : principal.levelBits == 2 ? 15 : 63;
     for (int bit = 0; bit < 32; ++bit) {
-      const int digit = bit / frame.levelBits;
-      shift[static_cast<std::size_t>(bit)] = static_cast<std::uint8_t>(digit * frame.levelBits);
+      const int digit = bit / principal.levelBits;
+      shift[static_cast<std::size_t>(bit)] = static_cast<std::uint8_t>(digit * principal.levelBits);
       base[static_cast<std::size_t>(bit)] =
-          static_cast<std::uint16_t>((firstLevel + frame.levels - digit) * NTree::kPasses);
+          static_cast<std::uint16_t>((firstLevel + principal.levels - digit) * NTree::kPasses);
     }
   }
   std::uint16_t operator()(std::uint32_t key, std::uint32_t different) const {
@@ -178,9 +179,9 @@ struct Ranker {
   std::uint32_t mask;
 };
 
-/// Ranks of all entries; returns how many points share their key with the one before.
-std::size_t rankEntries(std::size_t count, const TreeFrame& frame, TreeScratch& scratch) {
-  const Ranker ranker(frame);
+/// Ranks all entries, and returns how many points share their key with the one before.
+std::size_t rankEntries(std::size_t count, const PrincipalAxes& principal, TreeScratch& scratch) {
+  const Ranker ranker(principal);
   std::size_t alike = 0;
   scratch.ranks[0] = 0;
   auto before = static_cast<std::uint32_t>(scratch.entries[0] >> 32);
@@ -197,21 +198,21 @@ std::size_t rankEntries(std::size_t count, const TreeFrame& frame, TreeScratch& 
   return alike;
 }
 
-/// As many more levels, for the points whose keys are the same so far. `entries` stay in the order of the longer key.
-void deepen(const LocalPoints& points, const TreeFrame& frame, TreeScratch& scratch) {
-  const double cells = std::ldexp(1.0, 2 * frame.levels);
-  const std::uint32_t inside = (1u << frame.levels) - 1;
-  const std::uint32_t aim = kThird >> (30 - 2 * frame.levels) & inside;
+/// Adds as many levels again for the points whose keys are the same so far, and sorts `entries` by the longer key.
+void deepen(const LocalPoints& points, const PrincipalAxes& principal, TreeScratch& scratch) {
+  const double cells = std::ldexp(1.0, 2 * principal.levels);
+  const std::uint32_t inside = (1u << principal.levels) - 1;
+  const std::uint32_t aim = kThird >> (30 - 2 * principal.levels) & inside;
   const auto finerKey = [&](std::uint64_t entry) {
     const auto p = static_cast<std::uint32_t>(entry);
-    const glm::dvec3 d(points.axis[0][p] - frame.middle.x, points.axis[1][p] - frame.middle.y,
-                       points.axis[2][p] - frame.middle.z);
+    const glm::dvec3 d(points.axis[0][p] - principal.middle.x, points.axis[1][p] - principal.middle.y,
+                       points.axis[2][p] - principal.middle.z);
     std::uint32_t cell[3];
     for (std::size_t k = 0; k < 3; ++k)
-      cell[k] = (static_cast<std::uint32_t>((glm::dot(d, frame.axes[k]) + 0.5) * cells) & inside) ^ aim;
-    return interleave(frame.levelBits, cell);
+      cell[k] = (static_cast<std::uint32_t>((glm::dot(d, principal.axes[k]) + 0.5) * cells) & inside) ^ aim;
+    return interleave(principal.levelBits, cell);
   };
-  const Ranker ranker(frame, frame.levels);
+  const Ranker ranker(principal, principal.levels);
   const std::size_t count = points.count();
   std::vector<std::uint64_t> run;
   for (std::size_t first = 0; first < count;) {
@@ -246,14 +247,14 @@ NTree buildTree(const LocalPoints& points, std::size_t wanted, TreeScratch& scra
   const LocalBounds bounds = boundsOf(points);
   NTree tree;
   tree.moments = momentsOf(points, bounds);
-  const TreeFrame frame = fitFrame(points, bounds, tree);
-  if (frame.levelBits == 3) makeKeys<3>(points, frame, scratch.entries.data());
-  if (frame.levelBits == 2) makeKeys<2>(points, frame, scratch.entries.data());
-  if (frame.levelBits == 1) makeKeys<1>(points, frame, scratch.entries.data());
+  const PrincipalAxes principal = fitAxes(points, bounds, tree);
+  if (principal.levelBits == 3) makeKeys<3>(points, principal, scratch.entries.data());
+  if (principal.levelBits == 2) makeKeys<2>(points, principal, scratch.entries.data());
+  if (principal.levelBits == 1) makeKeys<1>(points, principal, scratch.entries.data());
   sortEntries(count, scratch.entries, scratch.spare);
-  const std::size_t alike = rankEntries(count, frame, scratch);
+  const std::size_t alike = rankEntries(count, principal, scratch);
   wanted = std::min(wanted, count);
-  if (frame.levelBits > 1 && count - alike < wanted - wanted / 64) deepen(points, frame, scratch);
+  if (principal.levelBits > 1 && count - alike < wanted - wanted / 64) deepen(points, principal, scratch);
   tree.entries = scratch.entries.room(count);
   tree.ranks = scratch.ranks.room(count);
   return tree;

@@ -8,12 +8,12 @@
 
 namespace strata {
 
-SliceBuilder::SliceBuilder(const BuildFrame& frame, NodeKey cell, std::uint64_t points)
-    : frame_(frame), cell_(cell), slicesLeft_(points == 0 ? 0 : (points - 1) / kMostSlicePoints) {}
+SliceBuilder::SliceBuilder(const BuildContext& context, NodeKey cell, std::uint64_t points)
+    : context_(context), cell_(cell), slicesLeft_(points == 0 ? 0 : (points - 1) / kMostSlicePoints) {}
 
 std::vector<BuiltNode> SliceBuilder::add(std::span<const std::byte> packed) {
   std::vector<BuiltNode> full;
-  const std::size_t sliceBytes = kMostSlicePoints * frame_.format.stride();
+  const std::size_t sliceBytes = kMostSlicePoints * context_.format.stride();
   while (!packed.empty()) {
     const std::size_t taken = slicesLeft_ > 0 ? std::min(packed.size(), sliceBytes - pending_.size()) : packed.size();
     pending_.insert(pending_.end(), packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(taken));
@@ -26,13 +26,13 @@ std::vector<BuiltNode> SliceBuilder::add(std::span<const std::byte> packed) {
 }
 
 std::vector<std::byte> SliceBuilder::takeTopPoints() {
-  if (!frame_.averages()) return std::move(pending_);
-  const DrawColour colour(frame_.info);
-  const std::size_t stride = frame_.format.stride(), topStride = topPointStride(frame_);
+  if (!context_.averages()) return std::move(pending_);
+  const DrawColour colour(context_.info);
+  const std::size_t stride = context_.format.stride(), topStride = context_.topPointStride();
   std::vector<std::byte> packed(pending_.size() / stride * topStride);
   for (std::size_t i = 0; i < pending_.size() / stride; ++i) {
     const std::byte* record = pending_.data() + i * stride;
-    const Represented itself{colour.of(record + frame_.format.positionBytes())};
+    const Represented itself{colour.of(record + context_.format.positionBytes())};
     std::memcpy(packed.data() + i * topStride, record, stride);
     std::memcpy(packed.data() + i * topStride + stride, &itself, sizeof itself);
   }
@@ -47,19 +47,18 @@ std::vector<SubtreeShape> SliceBuilder::takeTopChildren() {
 }
 
 BuiltNode SliceBuilder::finishSlice(std::span<const std::byte> packed) {
-  const CellFrame cell(frame_, cell_);
-  const std::size_t stride = frame_.format.stride();
+  const CellCoordinates cell(context_, cell_);
+  const std::size_t stride = context_.format.stride();
   std::vector<std::int32_t> columns[3];
-  appendLocal(frame_, cell, packed, stride, columns);
-  const LevelOrder levels =
-      sampleNode(frame_.sampling, {{columns[0], columns[1], columns[2]}, cell.step}, LevelOrder::kAll, scratch_);
-  Moments moments = cell.world(levels.moments);
+  appendLocal(context_, cell, packed, stride, columns);
+  const LevelOrder order = levelOrder({{columns[0], columns[1], columns[2]}, cell.step}, LevelOrder::kAll, scratch_);
+  Moments moments = cell.world(order.moments);
   const std::vector<SubtreeShape> children = takeTopChildren();
   for (const SubtreeShape& child : children) moments.add(child.moments);
   NodePoints points;
-  gather(frame_, packed.data(), stride, levels.order, points);
-  FinishedNode finished = finishNode(frame_, cell_, points, levels, moments, children, encodeScratch_);
-  finished.node.record.firstChild = static_cast<std::uint32_t>(slicesLeft_--);
+  gather(context_, packed.data(), stride, order.order, points);
+  FinishedNode finished = finishNode(context_, {cell_, points, order, moments, children}, encodeScratch_);
+  finished.node.node.slice = static_cast<std::uint32_t>(slicesLeft_--);
   below_ = finished.shape;
   return std::move(finished.node);
 }

@@ -4,32 +4,29 @@
 #include <vector>
 
 #include "converter/distribute/attribute_variation.h"
-#include "converter/journal/record_bytes.h"
+#include "converter/journal/point_counts.h"
 #include "core/point_layout.h"
 #include "io/store/store.h"
 
 namespace strata {
 
-/// Smallest and largest value of every attribute, and the percentiles of intensity. Not thread-safe: one a thread,
-/// then add() them up.
+/// Finds the smallest and largest value of every attribute, and the percentiles of intensity. Used by one thread; each
+/// thread has its own, and add() joins their counts.
 class AttributeStats {
  public:
   explicit AttributeStats(const PointLayout& layout);
-  /// `records`: `count` attribute records, `stride` bytes apart; `variation` is theirs.
+  /// Counts `count` attribute records that lie `stride` bytes apart; `variation` is theirs.
   void gather(const std::byte* records, std::size_t stride, std::size_t count, const AttributeVariation& variation);
-  void add(const AttributeStats& other);
+  /// Throws Error for counts of another layout.
+  void add(const AttributeCounts& counts);
   void clear();
+  const AttributeCounts& counts() const { return counts_; }
+  /// The ranges as a store states them, by attribute.
   std::vector<AttributeRange> ranges() const;
-
-  void write(RecordWriter& record) const;
-  /// Adds what write() wrote for the same layout.
-  void addFrom(RecordReader& record);
 
  private:
   PointLayout layout_;
-  std::vector<AttributeRange> ranges_;
-  std::vector<std::uint64_t> intensities_;  ///< histogram of all 65536 values; empty without intensity
-  std::uint64_t points_ = 0;
+  AttributeCounts counts_;
 };
 
 }  // namespace strata

@@ -4,26 +4,28 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
+#include <utility>
 
+#include "converter/distribute/attribute_stats.h"
 #include "converter/distribute/point_packer.h"
+#include "converter/distribute/run_plan.h"
 #include "converter/distribute/run_sorter.h"
 #include "converter/distribute/split.h"
+#include "converter/journal/records.h"
+#include "core/error.h"
+#include "core/mutex.h"
 
 namespace strata {
 namespace {
 
-using Sources = std::vector<std::unique_ptr<PointSource>>;
+constexpr std::uint64_t kTaskPoints = std::uint64_t{1} << 20;  // a task has about as many points
+constexpr std::uint64_t kProgressPoints = 1 << 17;             // between two reports of progress
 
-constexpr std::size_t kLeastRun = 65536, kMostRun = 1 << 20;    // points
-constexpr std::uint64_t kTaskPoints = std::uint64_t{1} << 20;   // about; what a journal record is written for
-constexpr std::uint64_t kReaderBytes = std::uint64_t{4} << 20;  // of a thread besides its run: blocks, decoder
-constexpr std::uint64_t kProgressPoints = 1 << 17;
-
-/// Consecutive parts of the sources that are read by one thread and journaled together.
+/// Consecutive parts of the sources that one thread reads and journals together.
 struct Task {
   std::size_t firstPart, endPart;
 };
@@ -54,7 +56,7 @@ std::vector<Task> tasksOf(const Sources& sources, const std::vector<Part>& parts
   return tasks;
 }
 
-/// What is counted of the points of a task, and of all.
+/// Adds up statistics of the points of a task, or of all tasks. Used by one thread at a time.
 class Tally {
  public:
   explicit Tally(const PointLayout& layout) : stats_(layout) { clear(); }
@@ -65,6 +67,7 @@ class Tally {
     high_.fill(0);
     sources_.clear();
   }
+  /// Adds the points that `packer` has just packed.
   void add(std::size_t source, const PointPacker& packer, const PackedFormat& format,
            const AttributeVariation& variation) {
     if (sources_.empty() || sources_.back().source != source) sources_.push_back({source, 0, 0});
@@ -74,20 +77,12 @@ class Tally {
     stats_.gather(packer.points() + format.positionBytes(), format.stride(), packer.count(), variation);
     addBounds(packer.low(), packer.high());
   }
-  void write(RecordWriter& record) const {
-    record.put(low_);
-    record.put(high_);
-    record.putAll(std::span(sources_));
-    stats_.write(record);
+  void add(const PointCounts& counts) {
+    addBounds(counts.low, counts.high);
+    sources_.insert(sources_.end(), counts.sources.begin(), counts.sources.end());
+    stats_.add(counts.attributes);
   }
-  void addFrom(RecordReader record) {
-    const auto low = record.get<std::array<std::uint64_t, 3>>();
-    const auto high = record.get<std::array<std::uint64_t, 3>>();
-    addBounds(low, high);
-    const std::vector<SourceCount> counts = record.getAll<SourceCount>();
-    sources_.insert(sources_.end(), counts.begin(), counts.end());
-    stats_.addFrom(record);
-  }
+  PointCounts counts() const { return {low_, high_, sources_, stats_.counts()}; }
   void report(std::size_t sources, Distribution& out) const {
     out.sourcePoints.assign(sources, 0);
     out.sourceSkipped.assign(sources, 0);
@@ -106,9 +101,6 @@ class Tally {
   }
 
  private:
-  struct SourceCount {
-    std::uint64_t source, kept, skipped;
-  };
   void addBounds(const std::array<std::uint64_t, 3>& low, const std::array<std::uint64_t, 3>& high) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       low_[axis] = std::min(low_[axis], low[axis]);
@@ -121,7 +113,9 @@ class Tally {
   std::vector<SourceCount> sources_;
 };
 
-int firstLevel(std::uint64_t points, std::uint64_t limit, int cubeBits) {
+/// Levels of the first set: cells of an even surface, which has four times the points in a cell of twice the side, stay
+/// well within the limit.
+int firstLevels(std::uint64_t points, std::uint64_t limit, int cubeBits) {
   if (points <= limit) return 0;
   const double ratio = static_cast<double>(points) / static_cast<double>(limit);
   return std::min({static_cast<int>(std::ceil(std::log2(ratio) * 0.5)) + 2, CellGrid::kMostLevels, cubeBits});
@@ -130,32 +124,21 @@ int firstLevel(std::uint64_t points, std::uint64_t limit, int cubeBits) {
 /// Reads every source once into the first set.
 class Reading {
  public:
-  Reading(const Sources& sources, const Survey& frame, const PackedFormat& format, Workspace work,
-          const ConvertControl& control, Distribution& out)
-      : sources_(sources),
-        frame_(frame),
-        format_(format),
-        work_(work),
-        control_(control),
-        out_(out),
-        parts_(partsOf(sources)),
-        tasks_(tasksOf(sources, parts_)),
+  Reading(const Conversion& conversion, const Survey& survey, RunSet& set)
+      : conversion_(conversion),
+        survey_(survey),
+        format_(packedFormat(survey)),
+        parts_(partsOf(conversion.sources)),
+        tasks_(tasksOf(conversion.sources, parts_)),
+        grid_(set.grid),
         isDone_(tasks_.size(), 0),
-        total_(frame.layout) {}
-
-  void takeUpJournal() {
-    for (const Journal::Place& place : work_.journal.found()) {
-      if (place.kind != RecordKind::runs) continue;
-      RunsRecord record = readRuns(work_.journal, place);
-      if (record.head.set != 0) continue;
-      if (record.head.task >= tasks_.size()) throw Error(work_.journal.path(), "tells of parts that there are not");
-      isDone_[record.head.task] = 1;
-      total_.addFrom(RecordReader(record.extra));
-      donePoints_ += keep(record.written);
-    }
+        set_(set),
+        total_(survey.layout) {
+    takeUpJournal();
   }
 
-  void run(const RunPlan& plan) {
+  /// Reads the parts that are left; true unless points lie outside the cube.
+  bool run(const RunPlan& plan) {
     tbb::task_arena arena(plan.workers);
     arena.execute([&] {
       tbb::parallel_for(0, plan.workers, [&](int) {
@@ -167,38 +150,52 @@ class Reading {
         }
       });
     });
-    out_.outsideCube = outside_;
-    total_.report(sources_.size(), out_);
+    return !outside_;
+  }
+
+  void report(Distribution& out) STRATA_EXCLUDES(mutex_) {
+    const MutexLock lock(mutex_);
+    total_.report(conversion_.sources.size(), out);
   }
 
  private:
+  void takeUpJournal() STRATA_EXCLUDES(mutex_) {
+    const Journal& journal = conversion_.journal;
+    for (const Journal::FoundRecord& found : journal.found()) {
+      if (found.kind != RecordKind::runs) continue;
+      RunsRecord record = readRuns(journal, found);
+      if (record.set != 0) continue;
+      if (record.task >= tasks_.size() || !record.counts)
+        throw Error(journal.path(), "tells of parts that there are not");
+      isDone_[record.task] = 1;
+      donePoints_ += keep(std::move(record));
+    }
+  }
+
+  /// Takes task after task in their order, so that one slow file at the end does not wait behind a single thread.
   void work(std::size_t runPoints) {
-    // Tasks are taken in order, so that one slow file at the end does not wait behind a single thread.
-    RunSorter sorter(format_, runPoints, work_.spill);
-    Tally tally(frame_.layout);
+    RunSorter sorter(format_, runPoints, conversion_.spill);
+    Tally tally(survey_.layout);
     for (std::size_t t = nextTask_++; !failed_ && !outside_ && t < tasks_.size(); t = nextTask_++) {
       if (isDone_[t] != 0) continue;
-      sorter.aim(out_.sets.front().grid, static_cast<std::uint64_t>(t) << 24);
+      sorter.aim(grid_, static_cast<std::uint64_t>(t) << 24);
       tally.clear();
       for (std::size_t p = tasks_[t].firstPart; p < tasks_[t].endPart; ++p) readPart(parts_[p], sorter, tally);
       if (failed_ || outside_) return;
-      std::vector<WrittenRun> written = sorter.finish();
-      RecordWriter record;
-      tally.write(record);
-      appendRuns(work_.journal, {0, t}, record, written);
-      const std::lock_guard lock(mutex_);
-      total_.addFrom(RecordReader(record.bytes()));
-      keep(written);
+      RunsRecord record{0, t, tally.counts(), sorter.finish()};
+      appendRuns(conversion_.journal, record);
+      keep(std::move(record));
     }
   }
 
   void readPart(const Part& part, RunSorter& sorter, Tally& tally) {
-    PointPacker packer(frame_, format_, *sources_[part.source], frame_.mappings[part.source]);
+    const PointSource& source = *conversion_.sources[part.source];
+    PointPacker packer(survey_, format_, source, survey_.mappings[part.source]);
     const auto reader = packer.open(part.part);
     AttributeVariation variation;
-    std::uint64_t unseen = 0;  // by the progress line
+    std::uint64_t unreported = 0;
     while (!outside_ && !failed_ && packer.read(*reader, RunSorter::kBlockPoints)) {
-      control_.checkStop();
+      conversion_.control.checkStop();
       if (packer.outside()) {
         outside_ = true;
         return;
@@ -208,37 +205,33 @@ class Reading {
                       packer.count(), variation);
       tally.add(part.source, packer, format_, variation);
       sorter.add(packer.points(), packer.count(), variation);
-      unseen += packer.count() + packer.skipped();
-      if (unseen < kProgressPoints) continue;
-      control_.progress({stage::kDistribute, donePoints_ += unseen, frame_.claimedPoints});
-      unseen = 0;
+      unreported += packer.count() + packer.skipped();
+      if (unreported < kProgressPoints) continue;
+      conversion_.control.progress({stage::kDistribute, donePoints_ += unreported, survey_.claimedPoints});
+      unreported = 0;
     }
-    donePoints_ += unseen;
+    donePoints_ += unreported;
   }
 
-  /// Adds runs to the set of all points; returns how many points they have.
-  std::uint64_t keep(std::vector<WrittenRun>& written) {
-    RunSet& set = out_.sets.front();
-    std::uint64_t points = 0;
-    for (WrittenRun& w : written) {
-      for (const RunCell& cell : w.cells) set.points.at(cell.cell) += cell.points;
-      points += w.run.points;
-      set.runs.push_back(std::move(w.run));
-    }
-    return points;
+  /// Adds the points of a task to the set and returns how many they are.
+  std::uint64_t keep(RunsRecord&& record) STRATA_EXCLUDES(mutex_) {
+    const MutexLock lock(mutex_);
+    total_.add(*record.counts);
+    return set_.add(std::move(record.runs));
   }
 
-  const Sources& sources_;
-  const Survey& frame_;
+  const Conversion& conversion_;
+  const Survey& survey_;
   const PackedFormat format_;
-  const Workspace work_;
-  const ConvertControl& control_;
-  Distribution& out_;  ///< guarded by mutex_ while threads run
   const std::vector<Part> parts_;
   const std::vector<Task> tasks_;
-  std::vector<char> isDone_;  ///< by task, as the journal has it
-  std::mutex mutex_;
-  Tally total_;  ///< guarded by mutex_
+  const CellGrid grid_;       ///< of the set
+  std::vector<char> isDone_;  ///< by task, as the journal found it; constant after construction
+
+  Mutex mutex_;
+  RunSet& set_ STRATA_GUARDED_BY(mutex_);
+  Tally total_ STRATA_GUARDED_BY(mutex_);
+
   std::atomic<std::uint64_t> donePoints_{0};
   std::atomic<std::size_t> nextTask_{0};
   std::atomic<bool> outside_{false}, failed_{false};
@@ -246,32 +239,17 @@ class Reading {
 
 }  // namespace
 
-RunPlan planRuns(const PackedFormat& format, const ConvertOptions& options) {
-  const std::uint64_t budget = options.memoryBytes / 4;
-  const std::uint64_t share = budget / static_cast<std::uint64_t>(options.threads);
-  const std::uint64_t perPoint = RunSorter::memoryBytes(format, kLeastRun) / kLeastRun + 1;
-  RunPlan plan;
-  plan.runPoints =
-      std::clamp<std::size_t>(share > kReaderBytes ? (share - kReaderBytes) / perPoint : 0, kLeastRun, kMostRun);
-  const std::uint64_t worker = RunSorter::memoryBytes(format, plan.runPoints) + kReaderBytes;
-  plan.workers =
-      static_cast<int>(std::clamp<std::uint64_t>(budget / worker, 1, static_cast<std::uint64_t>(options.threads)));
-  return plan;
-}
-
-Distribution distribute(const Sources& sources, const Survey& frame, const PackedFormat& format,
-                        std::uint64_t bucketLimit, const ConvertOptions& options, Workspace work,
-                        const ConvertControl& control) {
+Distribution distribute(const Conversion& conversion, const Survey& survey, std::uint64_t chunkLimit) {
   Distribution out;
   out.sets.emplace_back(
-      CellGrid(NodeKey{}, firstLevel(frame.claimedPoints, bucketLimit, frame.cubeBits), frame.cubeBits));
-  Reading reading(sources, frame, format, work, control, out);
-  reading.takeUpJournal();
-  reading.run(planRuns(format, options));
+      CellGrid(NodeKey{}, firstLevels(survey.claimedPoints, chunkLimit, survey.cubeBits), survey.cubeBits));
+  {
+    Reading reading(conversion, survey, out.sets.front());
+    out.outsideCube = !reading.run(planRuns(packedFormat(survey), conversion.options));
+    reading.report(out);
+  }
   if (out.outsideCube || out.points == 0) return out;
-  RunSet& set = out.sets.front();
-  std::sort(set.runs.begin(), set.runs.end(), [](const Run& a, const Run& b) { return a.sequence < b.sequence; });
-  splitAndMerge(out, frame, format, bucketLimit, options, work, control);
+  out.chunks = splitIntoChunks(conversion, survey, chunkLimit, out.sets);
   return out;
 }
 

@@ -2,14 +2,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-
 #include <glm/glm.hpp>
 
 namespace strata {
 
 /// How a point travels between the stages: three grid integers of 4 or 8 bytes, then the attribute record.
 struct PackedFormat {
-  bool wide = false;  ///< 8-byte integers: the root cube spans more than 2^32 steps
+  bool wide = false;  ///< 8-byte integers, because the cube spans more than 2^32 steps
   std::size_t attributeBytes = 0;
 
   std::size_t positionBytes() const { return wide ? 24 : 12; }

@@ -9,7 +9,8 @@
 namespace strata {
 namespace {
 
-/// The whole number that a ratio is but for rounding; how far 2^31 times it may be off is less than a quarter.
+/// Finds the whole number nearest to a ratio; true where the two differ by so little that 2^31 times the difference is
+/// below a quarter, so that no product of a LAS integer is rounded wrongly.
 bool wholeFactor(double ratio, std::int64_t& whole) {
   const double rounded = std::round(ratio);
   whole = static_cast<std::int64_t>(rounded);
@@ -18,9 +19,15 @@ bool wholeFactor(double ratio, std::int64_t& whole) {
 
 }  // namespace
 
-PointPacker::PointPacker(const Survey& frame, const PackedFormat& format, const PointSource& source,
+PackedFormat packedFormat(const Survey& survey) { return {survey.cubeBits > 32, survey.layout.stride()}; }
+
+PointPacker::PointPacker(const Survey& survey, const PackedFormat& format, const PointSource& source,
                          const SourceMapping& mapping)
-    : frame_(frame), format_(format), source_(source), mapping_(mapping), sourceStride_(source.info().layout.stride()) {
+    : survey_(survey),
+      format_(format),
+      source_(source),
+      mapping_(mapping),
+      sourceStride_(source.info().layout.stride()) {
   integers_ = findIntegerAxes(source);
 }
 
@@ -28,19 +35,19 @@ bool PointPacker::findIntegerAxes(const PointSource& source) {
   if (!source.info().las) return false;
   for (int axis = 0; axis < 3; ++axis) {
     IntegerAxis& out = axes_[static_cast<std::size_t>(axis)];
-    const double shift = mapping_.originDelta[axis] / frame_.grid.scale[axis];
-    if (!wholeFactor(source.info().las->scale[axis] / frame_.grid.scale[axis], out.factor)) return false;
+    const double shift = mapping_.originDelta[axis] / survey_.grid.scale[axis];
+    if (!wholeFactor(source.info().las->scale[axis] / survey_.grid.scale[axis], out.factor)) return false;
     if (!(std::abs(shift) < 1e15) || std::abs(shift - std::round(shift)) > 0.01) return false;
     out.shift = static_cast<std::int64_t>(std::round(shift));
   }
   return true;
 }
 
-/// Positions of LAS integers: whole numbers all the way.
+/// Packs LAS integers by whole numbers alone, without a detour over coordinates.
 template <typename Grid>
 void PointPacker::packIntegers() {
   const std::size_t stride = format_.stride();
-  const std::uint64_t end = std::uint64_t{1} << frame_.cubeBits;
+  const std::uint64_t end = std::uint64_t{1} << survey_.cubeBits;
   std::uint64_t low[3], high[3];
   std::fill(low, low + 3, std::numeric_limits<std::uint64_t>::max());
   std::fill(high, high + 3, std::uint64_t{0});
@@ -66,8 +73,8 @@ void PointPacker::packIntegers() {
 template <typename Grid>
 void PointPacker::packDoubles() {
   const std::size_t stride = format_.stride();
-  const double end = std::ldexp(1.0, frame_.cubeBits);
-  const glm::dvec3 perStep = 1.0 / frame_.grid.scale;
+  const double end = std::ldexp(1.0, survey_.cubeBits);
+  const glm::dvec3 perStep = 1.0 / survey_.grid.scale;
   low_.fill(std::numeric_limits<std::uint64_t>::max());
   high_.fill(0);
   std::byte* record = packed_.data();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "converter/memory/copy_bytes.h"
 #include "converter/memory/fixed_size.h"
 #include "core/morton.h"
 
@@ -22,9 +23,10 @@ RunSorter::RunSorter(const PackedFormat& format, std::size_t runPoints, Spill& s
       runPoints_(std::max(runPoints, kBlockPoints)),
       spill_(spill),
       differs_(format.attributeBytes, 0),
-      stored_(runPoints_ * format.stride() + kSlack),
-      sorted_(runPoints_ * format.stride() + kSlack),
-      cells_(runPoints_) {}
+      cells_(runPoints_) {
+  stored_.room(runPoints_ * format.stride() + kSlack);
+  sorted_.room(runPoints_ * format.stride() + kSlack);
+}
 
 void RunSorter::aim(const CellGrid& grid, std::uint64_t firstSequence) {
   grid_ = grid;
@@ -34,7 +36,7 @@ void RunSorter::aim(const CellGrid& grid, std::uint64_t firstSequence) {
   for (std::size_t i = 0; i < spread_.size(); ++i) spread_[i] = static_cast<std::uint16_t>(spreadBits(i));
 }
 
-/// The bytes that the run's points keep; begins a new run where a block needs more of them.
+/// Decides which attribute bytes the run stores, and begins a new run where a block needs more of them.
 void RunSorter::shapeFor(const std::byte* attributes, const AttributeVariation& variation) {
   const std::size_t bytes = format_.attributeBytes;
   bool more = false;
@@ -88,7 +90,7 @@ void RunSorter::cutDown(const std::byte* points, std::size_t count) {
     }
     const std::byte* attributes = record + sizeof grid;
     for (const RunShape::Span& span : shape_.kept) {
-      copyFew(to, attributes + span.from, span.bytes);
+      copyBytes(to, attributes + span.from, span.bytes);
       to += span.bytes;
     }
   }
@@ -105,7 +107,7 @@ void RunSorter::add(const std::byte* points, std::size_t count, const AttributeV
     cutDown<std::uint32_t>(points, count);
 }
 
-/// Counting sort: order inside a cell stays.
+/// Counting sort, which keeps the order inside a cell.
 void RunSorter::sortByCell(const std::vector<std::uint32_t>& starts) {
   std::vector<std::uint32_t> next(starts);
   withFixedSize<40>(stride_, [&](auto stride) {

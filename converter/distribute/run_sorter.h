@@ -6,25 +6,25 @@
 
 #include "converter/distribute/attribute_variation.h"
 #include "converter/distribute/runs.h"
-#include "converter/memory/page_buffer.h"
+#include "converter/memory/buffer.h"
 
 namespace strata {
 
-/// Collects packed points, sorts them by cell and writes them as runs. Used by one thread; its storage is used again
-/// for every run.
+/// Collects packed points, sorts them by cell and appends them to the spill as runs. Used by one thread; its storage is
+/// used again for every run.
 class RunSorter {
  public:
-  /// Memory it takes for runs of at most `points` points.
+  /// The memory that a sorter takes for runs of at most `points` points.
   static std::uint64_t memoryBytes(const PackedFormat& format, std::size_t points);
 
   RunSorter(const PackedFormat& format, std::size_t runPoints, Spill& spill);
 
-  /// Points that follow are of this set; those of another have to be flushed before.
+  /// Says which set the points that follow belong to. finish() comes before a change of the set.
   void aim(const CellGrid& grid, std::uint64_t firstSequence);
-  /// At most kBlockPoints packed points that lie in the set's node. `variation` is that of their attributes.
+  /// Adds at most kBlockPoints packed points that lie in the set's node. `variation` is that of their attributes.
   void add(const std::byte* points, std::size_t count, const AttributeVariation& variation);
   static constexpr std::size_t kBlockPoints = 8192;
-  /// Writes what has been collected and returns all runs since the last call.
+  /// Writes the points that have been collected and returns all runs since the last call. Throws Error.
   std::vector<WrittenRun> finish();
 
  private:
@@ -40,13 +40,13 @@ class RunSorter {
   std::optional<CellGrid> grid_;
   std::vector<std::uint16_t> spread_;  ///< Morton bits of a cell's x, y or z
   std::uint64_t sequence_ = 0;         ///< of the next run
-  std::vector<std::uint8_t> differs_;  ///< bytes that are kept; grows over the runs
+  std::vector<std::uint8_t> differs_;  ///< nonzero for the attribute bytes that are stored; grows over the runs
   RunShape shape_;
   std::size_t stride_ = 0;
   std::size_t count_ = 0;
-  PageBuffer stored_, sorted_;
-  std::vector<std::uint16_t> cells_;   ///< of each point
-  std::vector<std::uint32_t> counts_;  ///< of each cell
+  Buffer<std::byte> stored_, sorted_;  ///< points as they are in the spill, in the order of the input and by cell
+  std::vector<std::uint16_t> cells_;   ///< the cell of each point
+  std::vector<std::uint32_t> counts_;  ///< the points of each cell
   std::vector<WrittenRun> written_;
 };
 

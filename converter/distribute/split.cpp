@@ -6,311 +6,262 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
+#include <array>
 #include <limits>
-#include <map>
-#include <mutex>
+#include <memory>
+#include <optional>
 #include <set>
+#include <utility>
 
+#include "converter/distribute/point_packer.h"
+#include "converter/distribute/run_plan.h"
 #include "converter/distribute/run_sorter.h"
+#include "converter/distribute/split_plan.h"
+#include "converter/journal/records.h"
 #include "core/error.h"
+#include "core/mutex.h"
 
 namespace strata {
 namespace {
 
-constexpr std::uint64_t kTaskPoints = std::uint64_t{1} << 19;  // about
-/// A cell that holds this share of its set's points is likely to hold them in a corner again.
-constexpr double kDenseShare = 0.75;
+constexpr std::uint64_t kTaskPoints = std::uint64_t{1} << 19;  // a task has about as many points
 
-/// How a cell is split, as the journal has it.
-struct Split {
-  std::uint64_t set = 0, cell = 0;  ///< what is split
-  std::uint64_t parent = 1;         ///< the smallest node that holds its points, as far as was looked
-  std::int64_t levels = 0;          ///< of the new set below it; 0 = nothing left to split, the bucket is `parent`
+/// The numbers of the tasks that the journal has, by run set.
+using DoneTasks = std::deque<std::set<std::uint64_t>>;
+
+/// Some points of a cell that is split, for one thread to move.
+struct MoveTask {
+  std::size_t set = 0;       ///< that the points go to
+  std::uint64_t number = 0;  ///< among the tasks of that set
+  const CellGrid* from = nullptr;
+  std::vector<Stretch> stretches;
 };
 
-using Corner = std::array<std::uint64_t, 3>;
-
-class Splitter {
+/// Hands out the points of the cells of some splits, cell after cell. Used by one thread at a time.
+class MoveTasks {
  public:
-  Splitter(Distribution& all, const Survey& frame, const PackedFormat& format, std::uint64_t limit, const RunPlan& plan,
-           Workspace work, const ConvertControl& control)
-      : all_(all), frame_(frame), format_(format), limit_(limit), plan_(plan), work_(work), control_(control) {}
+  MoveTasks(std::vector<Split> splits, const std::deque<RunSet>& sets, const Journal& journal, const DoneTasks& done)
+      : splits_(std::move(splits)), sets_(sets), journal_(journal), done_(done) {}
 
-  void takeUpJournal() {
-    for (const Journal::Place& place : work_.journal.found()) {
-      if (place.kind == RecordKind::split) {
-        const std::vector<std::byte> payload = work_.journal.payload(place);
-        begin(RecordReader(payload).get<Split>());
-      } else if (place.kind == RecordKind::runs) {
-        RunsRecord record = readRuns(work_.journal, place);
-        if (record.head.set == 0) continue;
-        if (record.head.set >= all_.sets.size())
-          throw Error(work_.journal.path(), "tells of a cell that was not split");
-        keep(record.head, record.written);
-      }
-    }
+  /// Returns nothing when all points have been handed out.
+  std::shared_ptr<MoveTask> next() {
+    while (ready_.empty() && nextSplit_ < splits_.size()) makeTasks(splits_[nextSplit_++]);
+    if (ready_.empty()) return nullptr;
+    std::shared_ptr<MoveTask> task = std::move(ready_.front());
+    ready_.pop_front();
+    return task;
   }
-
-  /// Splits what is too large in the sets, set after set; those that come of it are among them.
-  void run() {
-    for (std::size_t first = 0, end = 1; first < end;) {
-      for (std::size_t s = first; s < end; ++s)
-        std::sort(all_.sets[s].runs.begin(), all_.sets[s].runs.end(),
-                  [](const Run& a, const Run& b) { return a.sequence < b.sequence; });
-      splitSets(first, end);
-      std::size_t last = end;
-      for (const auto& [from, split] : splits_)
-        if (from.first >= first && from.first < end && split.first.levels > 0) last = std::max(last, split.second + 1);
-      first = end;
-      end = last;
-    }
-  }
-
-  void fillBuckets() { emitSet(0); }
 
  private:
-  struct Task {
-    std::size_t set = 0;  ///< that the points go to
-    std::uint64_t number = 0;
-    const CellGrid* from = nullptr;
-    std::vector<Extent> extents;
-  };
-
-  int room(NodeKey cell) const { return std::min(NodeKey::kDeepestLevel, frame_.cubeBits) - cell.level(); }
-
-  /// Makes the new set, or remembers the bucket's node where there is none.
-  void begin(const Split& split) {
-    const std::lock_guard lock(mutex_);
-    const auto key = std::pair(static_cast<std::size_t>(split.set), static_cast<std::size_t>(split.cell));
-    splits_[key] = {split, all_.sets.size()};
-    if (split.levels == 0) return;
-    all_.sets.emplace_back(CellGrid(NodeKey{split.parent}, static_cast<int>(split.levels), frame_.cubeBits));
-    doneTasks_.resize(all_.sets.size());
-  }
-
-  void keep(const RunsHead& head, std::vector<WrittenRun>& written) {
-    const std::lock_guard lock(mutex_);
-    RunSet& set = all_.sets[head.set];
-    for (WrittenRun& w : written) {
-      for (const RunCell& cell : w.cells) set.points.at(cell.cell) += cell.points;
-      set.runs.push_back(std::move(w.run));
+  /// Cuts the points of one cell into tasks and leaves out those that are done.
+  void makeTasks(const Split& split) {
+    if (split.how.levels == 0) return;
+    if (!cursor_ || cursorSet_ != split.how.set) {
+      cursor_.emplace(sets_[split.how.set], journal_);
+      cursorSet_ = split.how.set;
     }
-    doneTasks_[head.set].insert(head.task);
+    std::uint64_t number = 0, points = kTaskPoints;
+    std::shared_ptr<MoveTask> task;
+    for (Stretch& stretch : cursor_->take(split.how.cell, split.how.cell + 1)) {
+      if (points >= kTaskPoints) {
+        task = std::make_shared<MoveTask>(MoveTask{split.newSet, number++, &sets_[split.how.set].grid, {}});
+        if (!done_[task->set].contains(task->number)) ready_.push_back(task);
+        points = 0;
+      }
+      points += stretch.points;
+      task->stretches.push_back(std::move(stretch));
+    }
   }
 
-  /// The smallest node that holds all points of a cell.
-  NodeKey tightNode(const RunSet& set, std::size_t cell) {
-    RunCursor cursor(set, work_.journal);
-    const std::vector<Extent> extents = cursor.take(cell, cell + 1);
-    Corner low, high{};
-    low.fill(std::numeric_limits<std::uint64_t>::max());
-    std::mutex mutex;
-    tbb::parallel_for(std::size_t{0}, extents.size(), [&](std::size_t e) {
-      ExtentReader reader(work_.spill, set.grid, format_, extents[e]);
-      std::vector<std::byte> scratch, points(RunSorter::kBlockPoints * format_.stride());
-      Corner lowHere, highHere{};
-      lowHere.fill(std::numeric_limits<std::uint64_t>::max());
-      while (reader.left() > 0) {
-        control_.checkStop();
-        const std::size_t count = std::min<std::uint64_t>(reader.left(), RunSorter::kBlockPoints);
-        reader.read(count, scratch, points.data());
+  const std::vector<Split> splits_;
+  const std::deque<RunSet>& sets_;
+  const Journal& journal_;
+  const DoneTasks& done_;
+  std::size_t nextSplit_ = 0;
+  std::optional<RunCursor> cursor_;
+  std::size_t cursorSet_ = 0;
+  std::deque<std::shared_ptr<MoveTask>> ready_;
+};
+
+/// Reads the points of a stretch and calls `see(packed points, count)` for each block of them.
+template <typename See>
+void forEachBlock(const Conversion& conversion, const PackedFormat& format, const CellGrid& grid,
+                  const Stretch& stretch, See&& see) {
+  StretchReader reader(conversion.spill, grid, format, stretch);
+  std::vector<std::byte> scratch, points(RunSorter::kBlockPoints * format.stride());
+  while (reader.left() > 0) {
+    conversion.control.checkStop();
+    const std::size_t count = std::min<std::uint64_t>(reader.left(), RunSorter::kBlockPoints);
+    reader.read(count, scratch, points.data());
+    see(points.data(), count);
+  }
+}
+
+/// A box of grid integers; empty at first.
+struct GridBounds {
+  std::array<std::uint64_t, 3> low, high{};
+  GridBounds() { low.fill(std::numeric_limits<std::uint64_t>::max()); }
+
+  void add(const std::int64_t (&grid)[3]) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], static_cast<std::uint64_t>(grid[axis]));
+      high[axis] = std::max(high[axis], static_cast<std::uint64_t>(grid[axis]));
+    }
+  }
+  void add(const GridBounds& other) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = std::min(low[axis], other.low[axis]);
+      high[axis] = std::max(high[axis], other.high[axis]);
+    }
+  }
+};
+
+/// Splits the cells of run set after run set: plans the splits of all sets that are complete, journals them, and moves
+/// their points, which completes the next sets.
+class Splitter {
+ public:
+  Splitter(const Conversion& conversion, const Survey& survey, std::uint64_t chunkLimit, std::deque<RunSet>& sets)
+      : conversion_(conversion),
+        format_(packedFormat(survey)),
+        limits_{chunkLimit, survey.cubeBits},
+        runPlan_(planRuns(format_, conversion.options)),
+        sets_(sets),
+        plan_(survey.cubeBits) {
+    takeUpJournal();
+  }
+
+  std::vector<Chunk> run() {
+    // The sets [first, end) are complete and not yet split.
+    for (std::size_t first = 0, end = 1; first < end;) {
+      std::vector<Split> splits;
+      std::size_t nextEnd = end;
+      for (std::size_t set = first; set < end; ++set) {
+        sets_[set].sortRuns();
+        planSet(set);
+        for (const Split& split : plan_.ofSet(set)) {
+          if (split.how.levels > 0) nextEnd = std::max(nextEnd, split.newSet + 1);
+          splits.push_back(split);
+        }
+      }
+      move(std::move(splits));
+      first = end;
+      end = nextEnd;
+    }
+    return chunksOf(sets_, plan_, limits_.chunkPoints);
+  }
+
+ private:
+  void takeUpJournal() {
+    const Journal& journal = conversion_.journal;
+    doneTasks_.resize(1);
+    for (const Journal::FoundRecord& found : journal.found()) {
+      if (found.kind == RecordKind::split) {
+        addSplit(readSplit(journal, found));
+      } else if (found.kind == RecordKind::runs) {
+        RunsRecord record = readRuns(journal, found);
+        if (record.set == 0) continue;  // distribute() has taken it up
+        if (record.set >= sets_.size()) throw Error(journal.path(), "tells of a cell that was not split");
+        doneTasks_[record.set].insert(record.task);
+        sets_[record.set].add(std::move(record.runs));
+      }
+    }
+  }
+
+  void addSplit(const SplitRecord& how) {
+    plan_.add(how, sets_);
+    doneTasks_.resize(sets_.size());
+  }
+
+  /// Decides and journals how the crowded cells of a set are split, as far as the journal does not know yet.
+  void planSet(std::size_t set) {
+    std::optional<RunCursor> cursor;
+    for (const CrowdedCell& crowded : crowdedCells(sets_[set], limits_)) {
+      if (plan_.find(set, crowded.cell) != nullptr) continue;
+      SplitRecord how{set, crowded.cell, sets_[set].grid.cell(crowded.cell), 0};
+      if (crowded.dense) {
+        if (!cursor) cursor.emplace(sets_[set], conversion_.journal);
+        const GridBounds bounds = boundsOf(sets_[set].grid, cursor->take(crowded.cell, crowded.cell + 1));
+        how.parent = smallestCell(how.parent, bounds.low, bounds.high, limits_);
+      }
+      how.levels = levelsOfSplit(sets_[set].points[crowded.cell], how.parent, limits_);
+      appendSplit(conversion_.journal, how);
+      addSplit(how);
+    }
+  }
+
+  GridBounds boundsOf(const CellGrid& grid, const std::vector<Stretch>& stretches) const {
+    tbb::enumerable_thread_specific<GridBounds> found;
+    tbb::parallel_for(std::size_t{0}, stretches.size(), [&](std::size_t s) {
+      GridBounds& bounds = found.local();
+      forEachBlock(conversion_, format_, grid, stretches[s], [&](const std::byte* points, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) {
-          std::int64_t grid[3];
-          format_.getPosition(points.data() + i * format_.stride(), grid);
-          for (std::size_t axis = 0; axis < 3; ++axis) {
-            lowHere[axis] = std::min(lowHere[axis], static_cast<std::uint64_t>(grid[axis]));
-            highHere[axis] = std::max(highHere[axis], static_cast<std::uint64_t>(grid[axis]));
-          }
+          std::int64_t position[3];
+          format_.getPosition(points + i * format_.stride(), position);
+          bounds.add(position);
         }
-      }
-      const std::lock_guard lock(mutex);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], lowHere[axis]);
-        high[axis] = std::max(high[axis], highHere[axis]);
-      }
+      });
     });
-    NodeKey node = set.grid.cell(cell);
-    for (int bit = frame_.cubeBits - node.level() - 1; bit >= 0 && room(node) > 0; --bit) {
-      int octant = 0;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        if ((low[axis] >> bit) != (high[axis] >> bit)) return node;
-        octant = octant << 1 | static_cast<int>(low[axis] >> bit & 1);
-      }
-      node = node.child(octant);
-    }
-    return node;
+    GridBounds all;
+    for (const GridBounds& bounds : found) all.add(bounds);
+    return all;
   }
 
-  /// Decides how to split a cell and journals it.
-  void decide(std::size_t s, std::size_t cell, std::uint64_t setPoints) {
-    const RunSet& set = all_.sets[s];
-    const std::uint64_t points = set.points[cell];
-    NodeKey parent = set.grid.cell(cell);
-    if (static_cast<double>(points) >= kDenseShare * static_cast<double>(setPoints)) parent = tightNode(set, cell);
-    const double ratio = static_cast<double>(points) / static_cast<double>(limit_);
-    const int wanted = static_cast<int>(std::ceil(std::log2(ratio) * 0.5)) + 1;
-    const int most = std::min(CellGrid::kMostLevels, room(parent));
-    const Split split{s, cell, parent.code, most > 0 ? std::clamp(wanted, 1, most) : 0};
-    RecordWriter record;
-    record.put(split);
-    work_.journal.append(RecordKind::split, record.bytes());
-    begin(split);
-  }
-
-  /// Where the producer of tasks is.
-  struct Producer {
-    std::size_t set = 0, end = 0, cell = 0;
-    std::uint64_t setPoints = 0;
-    std::unique_ptr<RunCursor> cursor;
-    std::vector<Extent> extents;  ///< of the cell, last first
-    std::size_t child = 0;
-    std::uint64_t number = 0;
-  };
-  /// The next task that is not done yet; false when there is none.
-  bool produce(Producer& at, Task& task) {
-    for (;;) {
-      control_.checkStop();
-      if (!at.extents.empty()) {
-        task = {at.child, at.number++, &all_.sets[at.set].grid, {}};
-        for (std::uint64_t points = 0; points < kTaskPoints && !at.extents.empty();) {
-          points += at.extents.back().points;
-          task.extents.push_back(std::move(at.extents.back()));
-          at.extents.pop_back();
-        }
-        if (isDone(task)) continue;
-        return true;
-      }
-      if (at.set == at.end) return false;
-      const RunSet& set = all_.sets[at.set];
-      if (!at.cursor) {
-        at.cursor = std::make_unique<RunCursor>(set, work_.journal);
-        at.setPoints = 0;
-        for (const std::uint64_t points : set.points) at.setPoints += points;
-      }
-      while (at.cell < set.points.size() && (set.points[at.cell] <= limit_ || room(set.grid.cell(at.cell)) <= 0))
-        ++at.cell;
-      if (at.cell == set.points.size()) {
-        at.cursor.reset();
-        at.cell = 0;
-        ++at.set;
-        continue;
-      }
-      if (!splits_.contains({at.set, at.cell})) decide(at.set, at.cell, at.setPoints);
-      const auto& [split, child] = splits_.at({at.set, at.cell});
-      if (split.levels > 0) {
-        at.child = child;
-        at.number = 0;
-        at.extents = at.cursor->take(at.cell, at.cell + 1);
-        std::reverse(at.extents.begin(), at.extents.end());
-      }
-      ++at.cell;
-    }
-  }
-
-  void splitSets(std::size_t first, std::size_t end) {
-    Producer at;
-    at.set = first;
-    at.end = end;
+  void move(std::vector<Split> splits) {
+    MoveTasks tasks(std::move(splits), sets_, conversion_.journal, doneTasks_);
     tbb::enumerable_thread_specific<RunSorter> sorters(
-        [this] { return RunSorter(format_, plan_.runPoints, work_.spill); });
-    tbb::task_arena arena(plan_.workers);
-    arena.execute([&] {
-      tbb::parallel_pipeline(static_cast<std::size_t>(plan_.workers),
-                             tbb::make_filter<void, std::shared_ptr<Task>>(tbb::filter_mode::serial_in_order,
-                                                                           [&](tbb::flow_control& flow) {
-                                                                             auto task = std::make_shared<Task>();
-                                                                             if (!produce(at, *task)) flow.stop();
-                                                                             return task;
-                                                                           }) &
-                                 tbb::make_filter<std::shared_ptr<Task>, void>(
-                                     tbb::filter_mode::parallel,
-                                     [&](const std::shared_ptr<Task>& task) { sortTask(*task, sorters.local()); }));
-    });
+        [this] { return RunSorter(format_, runPlan_.runPoints, conversion_.spill); });
+    const auto take = tbb::make_filter<void, std::shared_ptr<MoveTask>>(tbb::filter_mode::serial_in_order,
+                                                                        [&](tbb::flow_control& flow) {
+                                                                          conversion_.control.checkStop();
+                                                                          std::shared_ptr<MoveTask> task = tasks.next();
+                                                                          if (!task) flow.stop();
+                                                                          return task;
+                                                                        });
+    const auto work = tbb::make_filter<std::shared_ptr<MoveTask>, void>(
+        tbb::filter_mode::parallel, [&](const std::shared_ptr<MoveTask>& task) { moveTask(*task, sorters.local()); });
+    tbb::task_arena arena(runPlan_.workers);
+    arena.execute([&] { tbb::parallel_pipeline(static_cast<std::size_t>(runPlan_.workers), take & work); });
   }
 
-  void sortTask(const Task& task, RunSorter& sorter) {
-    std::vector<std::byte> scratch, points(RunSorter::kBlockPoints * format_.stride());
+  /// Sorts the points of a task into the new set, and gives back the disk that they had.
+  void moveTask(const MoveTask& task, RunSorter& sorter) STRATA_EXCLUDES(mutex_) {
     AttributeVariation variation;
-    sorter.aim(gridOf(task.set), task.number << 24);
-    for (const Extent& extent : task.extents) {
-      ExtentReader reader(work_.spill, *task.from, format_, extent);
-      while (reader.left() > 0) {
-        control_.checkStop();
-        const std::size_t count = std::min<std::uint64_t>(reader.left(), RunSorter::kBlockPoints);
-        reader.read(count, scratch, points.data());
-        findVariation(points.data() + format_.positionBytes(), format_.stride(), format_.attributeBytes, count,
-                      variation);
-        sorter.add(points.data(), count, variation);
-      }
+    sorter.aim(sets_[task.set].grid, task.number << 24);
+    for (const Stretch& stretch : task.stretches)
+      forEachBlock(conversion_, format_, *task.from, stretch, [&](const std::byte* points, std::size_t count) {
+        findVariation(points + format_.positionBytes(), format_.stride(), format_.attributeBytes, count, variation);
+        sorter.add(points, count, variation);
+      });
+    RunsRecord record{task.set, task.number, std::nullopt, sorter.finish()};
+    appendRuns(conversion_.journal, record);
+    {
+      const MutexLock lock(mutex_);
+      sets_[task.set].add(std::move(record.runs));
     }
-    std::vector<WrittenRun> written = sorter.finish();
-    appendRuns(work_.journal, {task.set, task.number}, {}, written);
-    keep({task.set, task.number}, written);
-    for (const Extent& extent : task.extents)
-      work_.spill.release(extent.offset, extent.offset + extent.points * extent.run->shape.stride());
+    for (const Stretch& stretch : task.stretches) conversion_.spill.release(stretch.offset, stretch.end());
   }
 
-  bool isDone(const Task& task) {
-    const std::lock_guard lock(mutex_);
-    return doneTasks_[task.set].contains(task.number);
-  }
-
-  CellGrid gridOf(std::size_t set) {
-    const std::lock_guard lock(mutex_);
-    return all_.sets[set].grid;
-  }
-
-  void emitSet(std::size_t s) {
-    const RunSet& set = all_.sets[s];
-    std::vector<std::uint64_t> before(set.points.size() + 1);
-    for (std::size_t c = 0; c < set.points.size(); ++c) before[c + 1] = before[c] + set.points[c];
-    emitCells(s, before, 0, 0);
-  }
-
-  /// The largest cells whose points stay within the limit, from the top down: the node that is `index`-th of those
-  /// `depth` levels below the set's.
-  void emitCells(std::size_t s, const std::vector<std::uint64_t>& before, int depth, std::size_t index) {
-    const CellGrid grid = all_.sets[s].grid;
-    const int below = 3 * (grid.levels - depth);
-    const std::size_t first = index << below, end = (index + 1) << below;
-    const std::uint64_t points = before[end] - before[first];
-    if (points == 0) return;
-    Bucket bucket{{grid.parent.code << (3 * depth) | index}, points, s, first, end, false};
-    if (points <= limit_) {
-      all_.buckets.push_back(bucket);
-    } else if (below > 0) {
-      for (std::size_t octant = 0; octant < 8; ++octant) emitCells(s, before, depth + 1, index << 3 | octant);
-    } else if (const auto split = splits_.find({s, first}); split != splits_.end() && split->second.first.levels > 0) {
-      emitSet(split->second.second);
-    } else {
-      if (split != splits_.end()) bucket.cell = NodeKey{split->second.first.parent};
-      bucket.sliced = true;
-      all_.buckets.push_back(bucket);
-    }
-  }
-
-  Distribution& all_;
-  const Survey& frame_;
+  const Conversion& conversion_;
   const PackedFormat format_;
-  const std::uint64_t limit_;
-  const RunPlan plan_;
-  const Workspace work_;
-  const ConvertControl& control_;
-  std::mutex mutex_;  ///< guards all_.sets and doneTasks_ while threads run
-  std::map<std::pair<std::size_t, std::size_t>, std::pair<Split, std::size_t>> splits_;  ///< by set and cell
-  std::deque<std::set<std::uint64_t>> doneTasks_{1};                                     ///< by set
+  const SplitLimits limits_;
+  const RunPlan runPlan_;
+
+  /// Threads that move points add runs to sets under `mutex_`. The number of sets, the grids, and the runs of the sets
+  /// that points are moved from are constant meanwhile.
+  std::deque<RunSet>& sets_;
+  Mutex mutex_;
+
+  // Used by the thread that calls run(); constant while points are moved.
+  SplitPlan plan_;
+  DoneTasks doneTasks_;
 };
 
 }  // namespace
 
-void splitAndMerge(Distribution& all, const Survey& frame, const PackedFormat& format, std::uint64_t limit,
-                   const ConvertOptions& options, Workspace work, const ConvertControl& control) {
-  Splitter splitter(all, frame, format, limit, planRuns(format, options), work, control);
-  splitter.takeUpJournal();
-  splitter.run();
-  splitter.fillBuckets();
+std::vector<Chunk> splitIntoChunks(const Conversion& conversion, const Survey& survey, std::uint64_t chunkLimit,
+                                   std::deque<RunSet>& sets) {
+  Splitter splitter(conversion, survey, chunkLimit, sets);
+  return splitter.run();
 }
 
 }  // namespace strata

@@ -1,11 +1,18 @@
 #pragma once
-#include "converter/distribute/distribute.h"
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "converter/distribute/chunks.h"
+#include "converter/journal/conversion.h"
+#include "converter/survey/survey.h"
 
 namespace strata {
 
-/// Splits the cells of more than `limit` points of all sets, and of what comes of them, into sets of their own, and
-/// fills in the buckets. `all.sets` holds all points in its first set; the journal may know of others already.
-void splitAndMerge(Distribution& all, const Survey& frame, const PackedFormat& format, std::uint64_t limit,
-                   const ConvertOptions& options, Workspace work, const ConvertControl& control);
+/// Splits the cells of more than `chunkLimit` points of `sets`, and of the run sets that this makes, until none is left
+/// that can be split, and returns the chunks. `sets` holds all points in its only set when it is called; the journal
+/// may know of others already. In memory at any time: one run per thread. Throws Error and Stopped.
+std::vector<Chunk> splitIntoChunks(const Conversion& conversion, const Survey& survey, std::uint64_t chunkLimit,
+                                   std::deque<RunSet>& sets);
 
 }  // namespace strata

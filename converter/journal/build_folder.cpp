@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <span>
 
-#include "converter/journal/conversion_terms.h"
+#include "converter/journal/records.h"
 #include "core/error.h"
 #include "io/file/output_file.h"
 #include "io/store/store_files.h"
@@ -26,7 +26,7 @@ constexpr const char* kJournalFile = "journal";
 constexpr std::array<std::string_view, 4> kStoreFiles{kInfoFile, kHierarchyFile, kPointsFile, kNewPointsFile};
 constexpr std::array<std::string_view, 4> kWorkFiles{kLockFile, kJournalFile, "spill", "points.built"};
 
-/// The name of an entry that a store, or a store being built, does not have; empty where there is none.
+/// Returns the name of an entry that neither a store nor a store being built has; empty where there is none.
 std::string strangeEntry(const std::string& folder) {
   std::error_code failure;
   for (auto entry = fs::directory_iterator(folder, failure); !failure && entry != fs::directory_iterator();
@@ -66,13 +66,13 @@ bool isTaken(const std::string& path) {
   return true;
 }
 
-/// The temporary points may lie in a folder of their own.
+/// Removes the spill of an interrupted conversion, which may lie in a folder of its own.
 void removeSpillOf(const std::string& journalPath) {
   try {
     const std::string spill = readHead(Journal(journalPath)).spillPath;
     std::error_code ignored;
     if (!spill.empty()) fs::remove(spill, ignored);
-  } catch (const Error&) {  // a journal that tells of nothing
+  } catch (const Error&) {  // the journal has no head, so there is no spill to find
   }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "converter/journal/record_bytes.h"
 #include "core/error.h"
 #include "core/version.h"
 
@@ -23,12 +22,11 @@ ConversionTerms::Input inputOf(const SourceInfo& info) {
 
 }  // namespace
 
-ConversionTerms termsOf(const std::vector<std::unique_ptr<PointSource>>& sources, const ConvertOptions& options) {
+ConversionTerms termsOf(const Sources& sources, const ConvertOptions& options) {
   ConversionTerms terms;
   terms.options = {{"the program", "strata " + version()},
                    {"--memory", std::to_string(options.memoryBytes)},
                    {"--node-points", std::to_string(options.nodePoints)},
-                   {"--sampling", samplingName(options.sampling)},
                    {"--lod-colour", options.lodColour == LodColour::average ? "average" : "first"},
                    {"--normals", options.normals ? "yes" : "no"},
                    {"--columns", options.source.columns},
@@ -57,50 +55,12 @@ void checkSameTerms(const std::string& folder, const ConversionTerms& begun, con
     if (before->changedNs != input.changedNs)
       throw Error(input.path, std::string("has been written to since the conversion was interrupted") + kStartAgain);
     if (begun.inputs[i].path != input.path)
-      throw Error(input.path, std::string("stands elsewhere among the inputs than before") + kStartAgain);
+      throw Error(input.path, std::string("has another place among the inputs than before") + kStartAgain);
   }
   if (begun.inputs.size() != now.inputs.size())
     throw Error(folder, "the interrupted conversion had another number of inputs, found " +
                             std::to_string(now.inputs.size()) + " (expected " + std::to_string(begun.inputs.size()) +
                             ")" + kStartAgain);
-}
-
-void appendHead(Journal& journal, const JournalHead& head) {
-  RecordWriter record;
-  record.putText(head.spillPath);
-  record.put<std::uint64_t>(head.terms.options.size());
-  for (const auto& [name, value] : head.terms.options) {
-    record.putText(name);
-    record.putText(value);
-  }
-  record.put<std::uint64_t>(head.terms.inputs.size());
-  for (const ConversionTerms::Input& input : head.terms.inputs) {
-    record.putText(input.path);
-    record.put(input.bytes);
-    record.put(input.changedNs);
-  }
-  journal.append(RecordKind::options, record.bytes());
-}
-
-JournalHead readHead(const Journal& journal) {
-  if (journal.found().empty() || journal.found().front().kind != RecordKind::options)
-    throw Error(journal.path(), std::string("does not say what was converted") + kStartAgain);
-  const std::vector<std::byte> payload = journal.payload(journal.found().front());
-  RecordReader record(payload);
-  JournalHead head;
-  head.spillPath = record.getText();
-  head.terms.options.resize(record.get<std::uint64_t>());
-  for (auto& [name, value] : head.terms.options) {
-    name = record.getText();
-    value = record.getText();
-  }
-  head.terms.inputs.resize(record.get<std::uint64_t>());
-  for (ConversionTerms::Input& input : head.terms.inputs) {
-    input.path = record.getText();
-    input.bytes = record.get<std::uint64_t>();
-    input.changedNs = record.get<std::int64_t>();
-  }
-  return head;
 }
 
 }  // namespace strata

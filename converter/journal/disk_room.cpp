@@ -40,7 +40,7 @@ std::optional<std::string> warningFor(const std::string& folder, const char* wha
 
 }  // namespace
 
-DiskNeed usualDiskNeed(const std::vector<std::unique_ptr<PointSource>>& sources) {
+DiskNeed usualDiskNeed(const Sources& sources) {
   double packed = 0.0;
   for (const auto& source : sources)
     packed += static_cast<double>(source->info().pointCount) *

@@ -1,5 +1,4 @@
 #pragma once
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -7,21 +6,21 @@
 
 namespace strata {
 
-/// Disk that a conversion needs, bytes.
+/// The disk that a conversion needs, bytes.
 struct DiskNeed {
   double store = 0.0;
-  double temporary = 0.0;  ///< most at a time
+  double temporary = 0.0;  ///< at its peak
 };
 
-/// What scans like these usually need, from counts and record sizes alone; planConversion() looks closer.
-DiskNeed usualDiskNeed(const std::vector<std::unique_ptr<PointSource>>& sources);
+/// Estimates what scans like these usually need, from counts and record sizes alone. planConversion() looks closer.
+DiskNeed usualDiskNeed(const Sources& sources);
 
-/// A sentence for each disk that has less room than is needed on it. `storeFolder` is where the store will stand,
-/// `tempFolder` where the temporary points will; both may be on one disk. Nothing where the system does not say.
+/// Returns a sentence for each disk that has less room than it needs. `storeFolder` is the folder of the store and
+/// `tempFolder` that of the spill; both may be on one disk. Returns nothing where the system does not know.
 std::vector<std::string> roomWarnings(const std::string& storeFolder, const std::string& tempFolder,
                                       const DiskNeed& need);
 
-/// The folder that holds `path`; "." where none is named.
+/// The folder that holds `path`; "." where `path` names none.
 std::string folderOf(const std::string& path);
 
 /// "512 MiB", "13.4 GiB".

@@ -12,7 +12,7 @@
 
 namespace strata {
 
-/// Builds the bytes of a journal record.
+/// Builds the payload of a journal record.
 class RecordWriter {
  public:
   template <typename T>
@@ -25,7 +25,7 @@ class RecordWriter {
     putBytes(std::as_bytes(values));
   }
   void putText(std::string_view text) { putAll(std::span(text.data(), text.size())); }
-  /// Seven bits a byte, lowest first; the highest bit says that more follow (LEB128).
+  /// Writes seven bits per byte, lowest first; the highest bit of a byte says that more follow (LEB128).
   void putShort(std::uint64_t value) {
     for (; value >= 128; value >>= 7) bytes_.push_back(static_cast<std::byte>(value | 128));
     bytes_.push_back(static_cast<std::byte>(value));
@@ -42,7 +42,7 @@ class RecordWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads them back in the same order. Throws Error where the record ends early.
+/// Reads the payload of a journal record in the order in which it was written. Throws Error where it ends early.
 class RecordReader {
  public:
   explicit RecordReader(std::span<const std::byte> bytes) : all_(bytes), bytes_(bytes) {}
@@ -77,7 +77,6 @@ class RecordReader {
   }
   /// Bytes read so far.
   std::size_t position() const { return all_.size() - bytes_.size(); }
-  void skip(std::size_t count) { take(count); }
 
  private:
   std::span<const std::byte> take(std::size_t count) {

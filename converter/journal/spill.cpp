@@ -62,13 +62,13 @@ void Spill::read(std::uint64_t offset, std::span<std::byte> bytes) const {
     throw Error(path_, "temporary points end early");
 }
 
-Spill::Handle Spill::put(std::span<const std::byte> bytes) { return {append(bytes), bytes.size(), checksum(bytes)}; }
+SpilledBytes Spill::put(std::span<const std::byte> bytes) { return {append(bytes), bytes.size(), checksum(bytes)}; }
 
-void Spill::get(const Handle& handle, std::vector<std::byte>& out) const {
+void Spill::get(const SpilledBytes& spilled, std::vector<std::byte>& out) const {
   const std::size_t start = out.size();
-  out.resize(start + handle.bytes);
-  read(handle.offset, std::span(out).subspan(start));
-  if (checksum(std::span(out).subspan(start)) != handle.checksum)
+  out.resize(start + spilled.bytes);
+  read(spilled.offset, std::span(out).subspan(start));
+  if (checksum(std::span(out).subspan(start)) != spilled.checksum)
     throw Error(path_, "temporary points are damaged; --force starts the conversion again");
 }
 

@@ -9,8 +9,8 @@
 
 namespace strata {
 
-/// Memory for plain values that is used again and again: grows, forgets what it held when it does, and never sets it
-/// to zero. Large ones ask for huge pages: radix sorts write to a thousand places at once.
+/// Memory for plain values that is used again and again. It grows, loses its values when it does, and never sets them
+/// to zero. Large buffers ask for huge pages, because radix sorts write to a thousand places at once.
 template <typename T>
 class Buffer {
  public:
@@ -22,7 +22,7 @@ class Buffer {
   }
   ~Buffer() { std::free(data_); }
 
-  /// Room for at least `count` values.
+  /// Makes room for at least `count` values and returns the first `count`. Throws std::bad_alloc.
   std::span<T> room(std::size_t count) {
     if (count > capacity_) grow(count);
     return {data_, count};
@@ -49,7 +49,7 @@ class Buffer {
     bytes = (bytes + unit - 1) / unit * unit;
     data_ = static_cast<T*>(std::aligned_alloc(unit, bytes));
     if (data_ == nullptr) throw std::bad_alloc();
-    if (huge) ::madvise(data_, bytes, MADV_HUGEPAGE);
+    if (huge) ::madvise(data_, bytes, MADV_HUGEPAGE);  // a wish; it may fail
     capacity_ = count;
   }
 

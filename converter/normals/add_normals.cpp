@@ -11,6 +11,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <numeric>
 #include <span>
 
@@ -28,12 +29,12 @@ namespace {
 
 constexpr std::uint64_t kMostRegionPoints = 1 << 20;
 constexpr std::uint64_t kLeastRegionPoints = 1 << 16;
-/// A point of a region takes about so many bytes: position twice, place, order, tree, what is around; and what a
-/// program takes without points.
+/// A point of a region takes about as much: its position twice, indices, order, tree, and the points around.
 constexpr std::uint64_t kRegionPointBytes = 200;
+/// The program takes as much without points.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{200} << 20;
 
-/// Two bytes for each point of the store, in a temporary file without a name.
+/// Two bytes for each point of the store, in a temporary file without a name. Thread-safe.
 class CodeFile {
  public:
   explicit CodeFile(const std::string& folder) : folder_(folder) {
@@ -60,7 +61,7 @@ class CodeFile {
   int descriptor_;
 };
 
-/// The codes of all points: of nodes that lie in one region in the file, of those above the regions in memory.
+/// The normals of all points: in the file for nodes inside one region, in memory for the few nodes above the regions.
 class NormalCodes {
  public:
   NormalCodes(const Hierarchy& hierarchy, const std::vector<NormalRegion>& regions, const std::string& folder)
@@ -75,7 +76,7 @@ class NormalCodes {
         shared_[i].resize(hierarchy.nodes[i].pointCount, Octahedral{127, 127});
   }
 
-  /// Different threads may put different regions.
+  /// Different threads may put different regions at the same time.
   void put(const RegionNormals& region) {
     std::vector<Octahedral> run;
     for (std::size_t i = 0; i < region.points.size();) {
@@ -99,8 +100,8 @@ class NormalCodes {
 
  private:
   CodeFile file_;
-  std::vector<std::uint64_t> first_;  ///< number of each node's first point
-  std::vector<std::vector<Octahedral>> shared_;
+  std::vector<std::uint64_t> first_;             ///< number of each node's first point
+  std::vector<std::vector<Octahedral>> shared_;  ///< by node; empty for nodes inside one region
 };
 
 PointLayout withNormals(const PointLayout& layout) {
@@ -109,7 +110,7 @@ PointLayout withNormals(const PointLayout& layout) {
   return PointLayout(std::move(attributes));
 }
 
-/// The node with its points' normals at the end of their records.
+/// Reads a node and appends the normals to the attribute records of its points.
 NodePoints extended(const Store& store, std::uint32_t node, const std::vector<Octahedral>& codes) {
   NodePoints points = readAll(store, node);
   const std::size_t stride = store.info().layout.stride();
@@ -132,58 +133,55 @@ NodePoints extended(const Store& store, std::uint32_t node, const std::vector<Oc
   return points;
 }
 
-void rewriteNodes(const Store& store, const NormalCodes& codes, const StoreInfo& info, const std::string& newPath,
-                  const ConvertOptions& options, const ConvertControl& control, Hierarchy& hierarchy) {
-  struct Rewritten {
-    std::uint32_t node;
-    EncodedNode encoded;
-  };
+struct RewrittenNode {
+  std::uint32_t node;
+  EncodedNode encoded;
+};
+
+/// Writes all nodes with their normals to `job.newPath`, in the order in which they lie in the store. `info` has the
+/// new layout; `hierarchy` gets the new sizes and offsets.
+void rewriteNodes(const NormalsJob& job, const Store& store, const NormalCodes& codes, const StoreInfo& info,
+                  Hierarchy& hierarchy) {
   std::vector<std::uint32_t> order(hierarchy.nodes.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
     return store.hierarchy().nodes[a].offset < store.hierarchy().nodes[b].offset;
   });
-  OutputFile file(newPath);
+  OutputFile file(job.newPath);
   const PointsHeader header = pointsHeader();
   file.append(std::as_bytes(std::span(&header, 1)));
   std::size_t next = 0;
-  tbb::task_arena arena(options.threads);
-  arena.execute([&] {
-    tbb::parallel_pipeline(static_cast<std::size_t>(2 * options.threads),
-                           tbb::make_filter<void, std::uint32_t>(tbb::filter_mode::serial_in_order,
-                                                                 [&](tbb::flow_control& flow) {
-                                                                   if (next == order.size()) {
-                                                                     flow.stop();
-                                                                     return 0u;
-                                                                   }
-                                                                   control.checkStop();
-                                                                   return order[next++];
-                                                                 }) &
-                               tbb::make_filter<std::uint32_t, std::shared_ptr<Rewritten>>(
-                                   tbb::filter_mode::parallel,
-                                   [&](std::uint32_t node) {
-                                     return std::make_shared<Rewritten>(
-                                         Rewritten{node, encodeNode(extended(store, node, codes.of(node)), info)});
-                                   }) &
-                               tbb::make_filter<std::shared_ptr<Rewritten>, void>(
-                                   tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<Rewritten>& done) {
-                                     NodeRecord& record = hierarchy.nodes[done->node];
-                                     record.offset = file.size();
-                                     record.headBytes = done->encoded.headBytes;
-                                     record.headChecksum = done->encoded.headChecksum;
-                                     record.payloadBytes = static_cast<std::uint32_t>(done->encoded.payload.size());
-                                     std::copy(done->encoded.drawBytes, done->encoded.drawBytes + 3, record.drawBytes);
-                                     file.append(done->encoded.payload);
-                                   }));
-  });
+  const auto take =
+      tbb::make_filter<void, std::uint32_t>(tbb::filter_mode::serial_in_order, [&](tbb::flow_control& flow) {
+        if (next == order.size()) {
+          flow.stop();
+          return 0u;
+        }
+        job.control.checkStop();
+        return order[next++];
+      });
+  const auto rewrite = tbb::make_filter<std::uint32_t, std::shared_ptr<RewrittenNode>>(
+      tbb::filter_mode::parallel, [&](std::uint32_t node) {
+        return std::make_shared<RewrittenNode>(
+            RewrittenNode{node, encodeNode(extended(store, node, codes.of(node)), info)});
+      });
+  const auto write = tbb::make_filter<std::shared_ptr<RewrittenNode>, void>(
+      tbb::filter_mode::serial_in_order, [&](const std::shared_ptr<RewrittenNode>& done) {
+        NodeRecord& record = hierarchy.nodes[done->node];
+        record.offset = file.size();
+        record.headBytes = done->encoded.headBytes;
+        record.headChecksum = done->encoded.headChecksum;
+        record.payloadBytes = static_cast<std::uint32_t>(done->encoded.payload.size());
+        std::copy(done->encoded.drawBytes, done->encoded.drawBytes + 3, record.drawBytes);
+        file.append(done->encoded.payload);
+      });
+  tbb::task_arena arena(job.options.threads);
+  arena.execute(
+      [&] { tbb::parallel_pipeline(static_cast<std::size_t>(2 * job.options.threads), take & rewrite & write); });
   file.finish();
 }
 
 }  // namespace
-
-Viewpoint viewpointOf(const std::vector<std::unique_ptr<PointSource>>& sources) {
-  return sources.size() == 1 ? sources.front()->info().viewpoint : std::nullopt;
-}
 
 bool normalsMissing(const StoreInfo& info, const ConvertOptions& options, const ConvertControl& control) {
   if (!options.normals) return false;
@@ -195,10 +193,10 @@ bool normalsMissing(const StoreInfo& info, const ConvertOptions& options, const 
   return true;
 }
 
-std::uint64_t addNormals(StoreInfo& info, Hierarchy& hierarchy, const std::string& pointsPath,
-                         const std::string& newPath, const Viewpoint& viewpoint, const ConvertOptions& options,
-                         const ConvertControl& control) {
-  const Store store(info, hierarchy, openFile(pointsPath));
+std::uint64_t addNormals(const NormalsJob& job, StoreInfo& info, Hierarchy& hierarchy) {
+  const ConvertOptions& options = job.options;
+  const Store store(info, hierarchy, openFile(job.pointsPath));
+  // Few threads with regions of a fair size do better than many with small ones, around which more has to be read.
   const std::uint64_t room =
       (options.memoryBytes - std::min(options.memoryBytes / 2, kProgramBytes)) / kRegionPointBytes;
   const int workers = static_cast<int>(
@@ -206,9 +204,9 @@ std::uint64_t addNormals(StoreInfo& info, Hierarchy& hierarchy, const std::strin
   const std::uint64_t limit =
       std::clamp(room / static_cast<std::uint64_t>(workers) / 2, kLeastRegionPoints / 2, kMostRegionPoints);
   const std::vector<NormalRegion> regions = normalRegions(hierarchy, limit);
-  const double reach = neighbourReach(store, options, control);
+  const double reach = neighbourReach(store, options, job.control);
 
-  NormalCodes codes(hierarchy, regions, options.tempFolder.empty() ? folderOf(pointsPath) : options.tempFolder);
+  NormalCodes codes(hierarchy, regions, options.tempFolder.empty() ? folderOf(job.pointsPath) : options.tempFolder);
   std::atomic<std::uint64_t> done{0};
   tbb::task_arena arena(workers);
   arena.execute([&] {
@@ -216,17 +214,17 @@ std::uint64_t addNormals(StoreInfo& info, Hierarchy& hierarchy, const std::strin
         tbb::blocked_range<std::size_t>(0, regions.size(), 1),
         [&](const auto& range) {
           for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            control.checkStop();
-            const RegionNormals region = estimateRegion(store, regions[i], reach, limit, viewpoint);
+            job.control.checkStop();
+            const RegionNormals region = estimateRegion(store, regions[i], reach, limit, job.station);
             codes.put(region);
-            control.progress({stage::kNormals, done += region.points.size(), info.points});
+            job.control.progress({stage::kNormals, done += region.points.size(), info.points});
           }
         },
         tbb::simple_partitioner());
   });
   info.layout = withNormals(info.layout);
   info.ranges.push_back({0.0, 254.0, 0.0, 254.0});
-  rewriteNodes(store, codes, info, newPath, options, control, hierarchy);
+  rewriteNodes(job, store, codes, info, hierarchy);
   return codes.points() * sizeof(Octahedral);
 }
 

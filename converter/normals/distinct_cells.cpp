@@ -4,17 +4,9 @@
 #include <bit>
 #include <cmath>
 
+#include "core/random.h"
+
 namespace strata {
-namespace {
-
-/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014).
-std::uint64_t mixed(std::uint64_t v) {
-  v = (v ^ v >> 30) * 0xbf58476d1ce4e5b9u;
-  v = (v ^ v >> 27) * 0x94d049bb133111ebu;
-  return v ^ v >> 31;
-}
-
-}  // namespace
 
 DistinctCells::DistinctCells(int sizes) : registers_(static_cast<std::size_t>(sizes)) {
   for (auto& r : registers_) r.fill(0);
@@ -24,7 +16,7 @@ void DistinctCells::see(const std::int64_t (&grid)[3]) {
   for (std::size_t shift = 0; shift < registers_.size(); ++shift) {
     const auto x = static_cast<std::uint64_t>(grid[0] >> shift), y = static_cast<std::uint64_t>(grid[1] >> shift),
                z = static_cast<std::uint64_t>(grid[2] >> shift);
-    const std::uint64_t hash = mixed(x * 0x9e3779b97f4a7c15u + mixed(y * 0xc2b2ae3d27d4eb4fu + mixed(z)));
+    const std::uint64_t hash = mix64(x * kSplitMixStep + mix64(y * 0xc2b2ae3d27d4eb4fu + mix64(z)));
     std::uint8_t& reg = registers_[shift][hash >> (64 - kIndexBits)];
     const std::uint64_t rest = hash << kIndexBits | std::uint64_t{1} << (kIndexBits - 1);
     reg = std::max(reg, static_cast<std::uint8_t>(std::countl_zero(rest) + 1));

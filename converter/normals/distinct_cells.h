@@ -6,18 +6,17 @@
 
 namespace strata {
 
-/// How many cells of each size have points in them, to about 2 %, in memory that does not grow: one HyperLogLog
-/// (Flajolet et al. 2007) a size. The same for any order of the points. Not thread-safe: one a thread, then add() them
-/// up.
+/// Estimates how many cells of each size have points in them, to about 2 %, in memory that does not grow: one
+/// HyperLogLog (Flajolet et al. 2007) per size. The result does not depend on the order of the points. Used by one
+/// thread; each thread has its own, and add() joins them.
 class DistinctCells {
  public:
-  /// Cells of 2^0 to 2^(sizes - 1) grid steps.
+  /// Counts cells with sides of 2^0 to 2^(sizes - 1) grid steps.
   explicit DistinctCells(int sizes);
   void see(const std::int64_t (&grid)[3]);
   void add(const DistinctCells& other);
-  /// Number of occupied cells of 2^shift steps.
+  /// The number of occupied cells with sides of 2^shift grid steps.
   double count(int shift) const;
-  int sizes() const { return static_cast<int>(registers_.size()); }
 
  private:
   static constexpr int kIndexBits = 11;

@@ -7,7 +7,7 @@ namespace strata {
 namespace {
 
 constexpr std::uint32_t kLeafPoints = 12;
-/// What rounding may take off the square of a distance to a box.
+/// Rounding may take as much off the square of a distance to a box.
 constexpr double kSlack = 1.0 + 1e-12;
 
 double square(const glm::dvec3& v) { return glm::dot(v, v); }

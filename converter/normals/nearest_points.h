@@ -6,25 +6,26 @@
 
 namespace strata {
 
-/// A kd-tree over distinct points that finds the nearest ones to a point of its own. What it finds depends on the
-/// points within reach alone, not on how the tree came to be: of points equally far the one with the smaller x, then y,
-/// then z counts as nearer. Immutable after construction.
+/// A kd-tree over distinct points that finds the nearest neighbours of one of them. They depend on the points within
+/// reach alone, not on the shape of the tree: of points equally far the one with the smaller x, then y, then z counts
+/// as nearer. Immutable after construction.
 class NearestPoints {
  public:
-  /// `points` have to be sorted by x, y, z and distinct.
+  /// `points` must be distinct, sorted by x, y, z, and outlive the tree.
   explicit NearestPoints(const std::vector<glm::dvec3>& points);
 
   /// Replaces `found` by the indices of at most `count` points within `reach` of point `index`, itself included,
   /// from the nearest on.
   void find(std::uint32_t index, std::size_t count, double reach, std::vector<std::uint32_t>& found) const;
 
-  /// Indices of the points in an order in which neighbours mostly are near: good to ask in.
+  /// The indices of the points in an order in which consecutive points are mostly near each other, so that searches in
+  /// this order find the tree in the processor's caches.
   const std::vector<std::uint32_t>& order() const { return order_; }
 
  private:
   struct Node {
     double split = 0.0;                ///< coordinate between the two sides
-    std::uint32_t begin = 0, end = 0;  ///< of order_
+    std::uint32_t begin = 0, end = 0;  ///< range of order_
     std::uint32_t right = 0;           ///< index of the upper side; the lower one follows its parent. 0 = a leaf
     std::uint32_t axis = 0;
   };

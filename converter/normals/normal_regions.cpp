@@ -18,7 +18,7 @@ namespace strata {
 namespace {
 
 constexpr std::size_t kNeighbours = 16;  // the point itself included
-/// Cells of the size in which there are so many points on average, and how many of such cells a neighbour may be off.
+/// A neighbour may be four cells away, of the size in which a cell has six points on average.
 constexpr double kPointsOfCell = 6.0;
 constexpr double kReachInCells = 4.0;
 
@@ -54,18 +54,19 @@ GridBox boxOf(NodeKey key, int cubeBits) {
   return box;
 }
 
-/// What estimateRegion() works on.
+/// The points that estimateRegion() works on.
 struct Gathered {
   std::vector<RegionPoint> own;
-  std::vector<glm::dvec3> positions;  ///< metres from grid integer 0; those of `own` first, then what is around
+  std::vector<glm::dvec3> positions;  ///< metres from grid integer 0: those of `own`, then those around
 };
 
+/// Collects the points in and around a region from the nodes of a store.
 class Gatherer {
  public:
   Gatherer(const Store& store, const GridBox& region, const GridBox& around, std::uint64_t mostAround)
       : store_(store), region_(region), around_(around), mostAround_(mostAround) {}
 
-  /// False where more points lie around than may be.
+  /// False where more points lie around than are allowed.
   bool gather(Gathered& out) {
     visit(0, out);
     if (beyond_.size() > mostAround_) return false;
@@ -113,9 +114,10 @@ bool before(const glm::dvec3& a, const glm::dvec3& b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
 }
 
-glm::dvec3 oriented(const glm::dvec3& normal, const glm::dvec3& position, const Viewpoint& viewpoint) {
+/// Turns the normal to the station's side, or up; where that leaves it open, towards +y and then +x.
+glm::dvec3 oriented(const glm::dvec3& normal, const glm::dvec3& position, const std::optional<glm::dvec3>& station) {
   double side = 0.0;
-  if (viewpoint) side = glm::dot(normal, *viewpoint - position);
+  if (station) side = glm::dot(normal, *station - position);
   for (const int axis : {2, 1, 0})
     if (side == 0.0) side = normal[axis];
   return side < 0.0 ? -normal : normal;
@@ -125,7 +127,7 @@ glm::dvec3 oriented(const glm::dvec3& normal, const glm::dvec3& position, const 
 
 std::vector<NormalRegion> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit) {
   std::vector<std::uint64_t> below(hierarchy.nodes.size());
-  for (std::size_t i = hierarchy.nodes.size(); i-- > 0;) {  // children stand behind their parents
+  for (std::size_t i = hierarchy.nodes.size(); i-- > 0;) {  // children come behind their parents
     const NodeRecord& record = hierarchy.nodes[i];
     below[i] = record.pointCount;
     for (int k = 0; k < std::popcount(record.childMask); ++k)
@@ -171,10 +173,10 @@ double neighbourReach(const Store& store, const ConvertOptions& options, const C
 }
 
 RegionNormals estimateRegion(const Store& store, const NormalRegion& region, double reach, std::uint64_t mostAround,
-                             const Viewpoint& viewpoint) {
+                             const std::optional<glm::dvec3>& station) {
   const GridBox box = boxOf(region.cell, store.info().cubeBits);
   Gathered all;
-  if (!region.hasNode) {  // where it is empty, nobody asks what is around
+  if (!region.hasNode) {  // an empty region needs no look around
     Gatherer(store, box, box, mostAround).gather(all);
     if (all.own.empty()) return {};
     all = {};
@@ -187,20 +189,21 @@ RegionNormals estimateRegion(const Store& store, const NormalRegion& region, dou
   out.points = std::move(all.own);
   if (out.points.empty()) return out;
 
+  // Points in one place are one neighbour, so that copies do not crowd out the others.
   std::vector<std::uint32_t> sorted(all.positions.size());
   std::iota(sorted.begin(), sorted.end(), 0u);
   std::sort(sorted.begin(), sorted.end(),
             [&](std::uint32_t a, std::uint32_t b) { return before(all.positions[a], all.positions[b]); });
   std::vector<glm::dvec3> distinct;
-  std::vector<std::uint32_t> placeOf(out.points.size());  // in `distinct`
+  std::vector<std::uint32_t> indexOf(out.points.size());  // of each own point in `distinct`
   std::vector<bool> wanted;
   for (const std::uint32_t i : sorted) {
     if (distinct.empty() || distinct.back() != all.positions[i]) {
       distinct.push_back(all.positions[i]);
       wanted.push_back(false);
     }
-    if (i < placeOf.size()) {
-      placeOf[i] = static_cast<std::uint32_t>(distinct.size() - 1);
+    if (i < indexOf.size()) {
+      indexOf[i] = static_cast<std::uint32_t>(distinct.size() - 1);
       wanted.back() = true;
     }
   }
@@ -211,16 +214,16 @@ RegionNormals estimateRegion(const Store& store, const NormalRegion& region, dou
   std::vector<Octahedral> normals(distinct.size(), Octahedral{127, 127});
   std::vector<std::uint32_t> found;
   std::vector<glm::dvec3> neighbours;
-  for (const std::uint32_t place : tree.order()) {
-    if (!wanted[place]) continue;
-    tree.find(place, kNeighbours, reach, found);
+  for (const std::uint32_t point : tree.order()) {
+    if (!wanted[point]) continue;
+    tree.find(point, kNeighbours, reach, found);
     neighbours.clear();
     for (const std::uint32_t f : found) neighbours.push_back(distinct[f]);
     const glm::dvec3 normal = planeNormal(neighbours).value_or(glm::dvec3(0.0, 0.0, 1.0));
-    normals[place] = encodeOctahedral(oriented(normal, distinct[place] + store.info().grid.offset, viewpoint));
+    normals[point] = encodeOctahedral(oriented(normal, distinct[point] + store.info().grid.offset, station));
   }
-  out.normals.reserve(placeOf.size());
-  for (const std::uint32_t place : placeOf) out.normals.push_back(normals[place]);
+  out.normals.reserve(indexOf.size());
+  for (const std::uint32_t point : indexOf) out.normals.push_back(normals[point]);
   return out;
 }
 

@@ -1,39 +1,43 @@
 #pragma once
 #include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
-#include "converter/normals/add_normals.h"
+#include "converter/control.h"
+#include "converter/options.h"
 #include "core/octahedral.h"
 #include "io/store/store.h"
 
 namespace strata {
 
-/// Points of one node, by index in it.
+/// A point of a store.
 struct RegionPoint {
-  std::uint32_t node, point;
+  std::uint32_t node, point;  ///< index of the node in the hierarchy, and of the point in the node
 };
 
-/// A cell of the octree.
+/// A cell whose points get their normals together.
 struct NormalRegion {
   NodeKey cell;
-  bool hasNode = false;  ///< else only points of the nodes above it lie there, and mostly none
+  bool hasNode = false;  ///< otherwise only points of the nodes above lie in the cell, and mostly none
 };
 
-/// Cells that cover every point of the store once, none with more than `limit` points below it where that can be had.
+/// Returns cells that cover every point of the store once, none with more than `limit` points below it where the nodes
+/// allow that.
 std::vector<NormalRegion> normalRegions(const Hierarchy& hierarchy, std::uint64_t limit);
 
-/// How far a neighbour may be, metres: so that typical points have far more than they need within it, and the same
-/// however the store is cut up. Reads every node.
+/// Returns how far a neighbour may be, metres: typical points have far more neighbours within it than they need, and it
+/// is the same however the store is cut into nodes. Reads every node. Throws Error and Stopped.
 double neighbourReach(const Store& store, const ConvertOptions& options, const ConvertControl& control);
 
 /// The points in a region, wherever in the tree they are stored, and the normal of each.
 struct RegionNormals {
-  std::vector<RegionPoint> points;
+  std::vector<RegionPoint> points;  ///< all points of a node follow one another
   std::vector<Octahedral> normals;
 };
-/// `mostAround` limits the points around the region that are looked at: where there are more, `reach` is halved until
-/// they fit.
+/// Normals look at `station` (world), or up where there is none. Where more than `mostAround` points lie around the
+/// region, `reach` is halved until fewer do. Throws Error.
 RegionNormals estimateRegion(const Store& store, const NormalRegion& region, double reach, std::uint64_t mostAround,
-                             const Viewpoint& viewpoint);
+                             const std::optional<glm::dvec3>& station);
 
 }  // namespace strata

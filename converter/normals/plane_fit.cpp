@@ -5,7 +5,7 @@
 namespace strata {
 namespace {
 
-constexpr double kLineShare = 1e-8;  // of the largest eigenvalue: below it the second one is nothing
+constexpr double kLineShare = 1e-8;  // of the largest eigenvalue; points whose second one is below it lie on a line
 
 }  // namespace
 

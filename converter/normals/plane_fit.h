@@ -5,9 +5,9 @@
 
 namespace strata {
 
-/// The direction, of unit length and either sign, across the plane nearest to the points: the eigenvector of the
-/// smallest eigenvalue of their covariance, by PCL, as pcl::NormalEstimation does. Nothing where fewer than three
-/// points or points on a line leave it open. The order of the points decides the last bits.
+/// Returns the normal, of unit length and either sign, of the plane nearest to the points: the eigenvector of the
+/// smallest eigenvalue of their covariance, by PCL, as pcl::NormalEstimation computes it. Returns nothing for fewer
+/// than three points and for points on a line. The order of the points decides the last bits.
 std::optional<glm::dvec3> planeNormal(std::span<const glm::dvec3> points);
 
 }  // namespace strata

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "converter/control.h"
 #include "converter/journal/disk_room.h"
 #include "core/program.h"
 
@@ -16,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostPlaneLines = 8;  // the smallest planes share the last one
+constexpr std::size_t kMostPlaneLines = 8;  // the smallest planes share the last line
 
 double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
@@ -29,7 +30,7 @@ double ratio(double part, double whole) { return whole > 0.0 ? part / whole : 0.
   text.append(line).append("\n");
 }
 
-/// The largest planes, and what is left of them as one.
+/// Keeps the largest planes and joins the others to one.
 std::vector<PlaneSize> fewPlanes(std::vector<PlaneSize> planes) {
   std::stable_sort(planes.begin(), planes.end(),
                    [](const PlaneSize& a, const PlaneSize& b) { return a.bytes > b.bytes; });
@@ -51,7 +52,7 @@ void addStages(std::string& text, const ConvertReport& report, const RunCost& co
     addLine(text, "  %-11s %9.2f %9.2f %6.2f %11.2f %10.3f", name, wall, cpu, ratio(cpu, wall),
             1e-6 * ratio(points, wall), 1e6 * ratio(cpu, points));
   };
-  for (const ConvertReport::Stage& stage : report.stages) row(stage.name.c_str(), stage.seconds, stage.cpuSeconds);
+  for (const StageTime& stage : report.stages) row(stage.name.c_str(), stage.seconds, stage.cpuSeconds);
   row("total", cost.seconds, cost.cpuSeconds);
 }
 
@@ -102,7 +103,7 @@ std::string summaryText(const std::string& output, const ConvertReport& report, 
 
 std::string summaryJson(const ConvertReport& report, const RunCost& cost) {
   Json stages = Json::object(), stageCpu = Json::object(), planes = Json::object();
-  for (const ConvertReport::Stage& stage : report.stages) {
+  for (const StageTime& stage : report.stages) {
     stages[stage.name] = stage.seconds;
     stageCpu[stage.name] = stage.cpuSeconds;
   }

@@ -3,22 +3,22 @@
 #include <string>
 #include <vector>
 
-#include "converter/options.h"
+#include "converter/convert_report.h"
 
 namespace strata {
 
-/// What the whole run of the program took.
+/// The cost of the whole run of the program.
 struct RunCost {
   double seconds = 0.0, cpuSeconds = 0.0;
   std::uint64_t peakMemoryBytes = 0;
 };
 
-/// Since the program's start; `seconds` is the caller's to fill in.
+/// Measures the time and memory since the program's start, except for `seconds`, which the caller fills in.
 RunCost runCost();
 
-/// What a conversion did, for people: at most about 20 lines.
+/// Describes a conversion for people, in at most about 20 lines.
 std::string summaryText(const std::string& output, const ConvertReport& report, const RunCost& cost);
-/// The same as one JSON object in one line (design section 10).
+/// Describes a conversion as one JSON object in one line.
 std::string summaryJson(const ConvertReport& report, const RunCost& cost);
 
 /// {"warning": MESSAGE}

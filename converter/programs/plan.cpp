@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "converter/convert.h"
 #include "converter/journal/disk_room.h"
 #include "converter/programs/progress_display.h"
 #include "converter/survey/sampled_source.h"
@@ -24,16 +25,14 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kSamplePoints = 1'500'000;
 constexpr std::uint64_t kThinner = 4;  // the second sample has so many times fewer points
-/// Bits that a point's position gets shorter by with twice the points: log2 of the number of its neighbours' places.
+/// The order of twice the points takes one bit more per point, so that positions get at most one bit shorter.
 constexpr double kMostBytesADoubling = 1.0 / 8;
-/// Beyond what the sample shows: deeper trees, chunks that end at different times.
+/// The sample shows neither deeper trees nor chunks that end at different times.
 constexpr double kBuildMore = 1.1;
-constexpr double kMergeMicros = 0.012;  // wall, a point: one thread, not in a sample of one chunk
-constexpr double kWriteMicros = 0.006;
+constexpr double kMergeMicros = 0.012;  // wall clock per point on one thread; a sample of one chunk has no merge
+constexpr double kWriteMicros = 0.006;  // wall clock per point
 
-using Sources = std::vector<std::unique_ptr<PointSource>>;
-
-/// A folder of our own that goes away.
+/// A new folder that the destructor removes.
 class ScratchFolder {
  public:
   explicit ScratchFolder(const std::string& parent) : path_(parent + "/strata-plan-XXXXXX") {
@@ -78,14 +77,14 @@ Sample convertSample(const Sources& sources, std::uint64_t points, const Convert
   return sample;
 }
 
-/// Seconds of a stage; a stage that is not there took none.
-ConvertReport::Stage stageOf(const ConvertReport& report, const char* name) {
-  for (const ConvertReport::Stage& stage : report.stages)
+/// Finds the time of a stage; a stage that did not run took none.
+StageTime stageOf(const ConvertReport& report, const char* name) {
+  for (const StageTime& stage : report.stages)
     if (stage.name == name) return stage;
   return {name, 0.0, 0.0};
 }
 
-/// From the time that each stage took for the sample. Reading counts by the wall clock, the disk included.
+/// Scales up the time that each stage took for the sample. Reading counts by the wall clock, which includes the disk.
 double secondsFor(const ConversionPlan& plan, const ConvertReport& sample, double surveySeconds, int threads) {
   const double more = static_cast<double>(plan.points) / static_cast<double>(std::max<std::uint64_t>(1, sample.points));
   const double reading = stageOf(sample, stage::kMeasure).seconds + stageOf(sample, stage::kDistribute).seconds;
@@ -94,7 +93,8 @@ double secondsFor(const ConversionPlan& plan, const ConvertReport& sample, doubl
          1e-6 * static_cast<double>(plan.points) * (kMergeMicros + kWriteMicros);
 }
 
-/// Bytes a point of the whole: what the larger sample took, less what each doubling of the points saved between them.
+/// Bytes per point of the whole scan: those of the larger sample, less what each doubling of the points saved between
+/// the two.
 double bytesOfPoint(const Sample& larger, const Sample& smaller, std::uint64_t points) {
   const double step = std::log2(static_cast<double>(larger.report.points) / static_cast<double>(smaller.report.points));
   const double rest = std::log2(static_cast<double>(points) / static_cast<double>(larger.report.points));

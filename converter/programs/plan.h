@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "converter/control.h"
 #include "converter/options.h"
 #include "core/box.h"
 
 namespace strata {
 
-/// What a conversion will take, before it is begun.
+/// The expected cost of a conversion.
 struct ConversionPlan {
   std::size_t scans = 0;
   std::uint64_t points = 0, inputBytes = 0;
@@ -20,14 +21,15 @@ struct ConversionPlan {
   std::vector<std::string> warnings;  ///< disks without enough room
 };
 
-/// Opens the scans and converts two samples of them, about a million points spread over all and a quarter of those,
-/// to a folder that is removed again. Store, temporary disk and time follow from what the samples took; how a node's
-/// points get closer in the full scan, and with it smaller, from the difference between the two.
-/// options.output may be empty. Throws Error for scans that convert() would refuse.
+/// Opens the scans and converts two samples of them, one of about a million points spread over all of them and one of a
+/// quarter of those, to a folder that it removes again. Store, temporary disk and time follow from the larger sample;
+/// the difference between the two shows how points take fewer bytes where they are closer. `options.output` may be
+/// empty. Throws Error for scans that convert() would refuse.
 ConversionPlan planConversion(const ConvertOptions& options, const ConvertControl& control);
 
-/// For people, and as one JSON object in one line.
+/// The plan for people, in about ten lines.
 std::string planText(const ConversionPlan& plan, const ConvertOptions& options);
+/// The plan as one JSON object in one line.
 std::string planJson(const ConversionPlan& plan);
 
 }  // namespace strata

@@ -16,14 +16,14 @@ namespace strata {
 namespace {
 
 constexpr std::chrono::milliseconds kTerminalInterval{250};
-constexpr double kPatienceSeconds = 2.0;
+constexpr double kPatienceSeconds = 2.0;      // a stage may take longer than usual by so much
 constexpr std::size_t kTerminalColumns = 80;  // where the terminal does not say
 
-/// What a stage takes, CPU microseconds a point, on the machine of docs/benchmarks.md (LAS; reading LAZ takes more,
-/// but while it is read its own rate counts).
+/// The cost of a stage on the machine of docs/benchmarks.md, for LAS. Reading LAZ takes more, but while it is read its
+/// own rate counts.
 struct StageCost {
   std::string_view stage;
-  double micros;
+  double micros;  ///< CPU microseconds per point
 };
 constexpr std::array<StageCost, 7> kTypicalMicros{{{stage::kSurvey, 0.0},
                                                    {stage::kMeasure, 0.10},
@@ -33,13 +33,14 @@ constexpr std::array<StageCost, 7> kTypicalMicros{{{stage::kSurvey, 0.0},
                                                    {stage::kNormals, 3.0},
                                                    {stage::kWrite, 0.01}}};
 
-std::size_t placeOf(std::string_view stage) {
+/// The index into kTypicalMicros; its size for an unknown stage.
+std::size_t indexOf(std::string_view stage) {
   const auto at = std::find_if(kTypicalMicros.begin(), kTypicalMicros.end(),
                                [&](const StageCost& cost) { return cost.stage == stage; });
   return static_cast<std::size_t>(at - kTypicalMicros.begin());
 }
 
-/// 0 where the system does not say.
+/// The memory that the program has now; 0 where the system does not say.
 std::uint64_t residentBytes() {
   std::ifstream in("/proc/self/statm");
   std::uint64_t size = 0, resident = 0;
@@ -65,15 +66,15 @@ double shareOf(std::uint64_t done, std::uint64_t total) {
 }  // namespace
 
 std::optional<double> secondsLeft(const Progress& progress, double stageSeconds, std::uint64_t points, int threads) {
-  const std::size_t place = placeOf(progress.stage);
-  if (points == 0 || place == kTypicalMicros.size()) return std::nullopt;
+  const std::size_t running = indexOf(progress.stage);
+  if (points == 0 || running == kTypicalMicros.size()) return std::nullopt;
   const double typical = 1e-6 * static_cast<double>(points) / std::max(1, threads);
   const double share = shareOf(progress.done, progress.total);
   double left =
-      share > 0.0 ? stageSeconds * (1.0 - share) / share : kTypicalMicros[place].micros * typical - stageSeconds;
-  if (left < -kPatienceSeconds) return std::nullopt;  // it takes longer than it should: who knows
+      share > 0.0 ? stageSeconds * (1.0 - share) / share : kTypicalMicros[running].micros * typical - stageSeconds;
+  if (left < -kPatienceSeconds) return std::nullopt;
   left = std::max(0.0, left);
-  for (std::size_t next = place + 1; next < kTypicalMicros.size(); ++next)
+  for (std::size_t next = running + 1; next < kTypicalMicros.size(); ++next)
     if (kTypicalMicros[next].stage != stage::kMeasure && kTypicalMicros[next].stage != stage::kNormals)
       left += kTypicalMicros[next].micros * typical;
   return left;
@@ -125,7 +126,7 @@ ProgressDisplay::~ProgressDisplay() {
 }
 
 void ProgressDisplay::update(const Progress& progress) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const bool same = std::string_view(latest_.stage) == progress.stage;
   if (!same) {
     stageBegin_ = Clock::now();
@@ -169,8 +170,8 @@ void ProgressDisplay::print(const ProgressMoment& moment) {
 }
 
 void ProgressDisplay::run(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  while (!wake_.wait_for(lock, stop, interval_, [&] { return stop.stop_requested(); })) {
+  MutexLock lock(mutex_);
+  while (!wake_.wait_for(mutex_, stop, interval_, [&] { return stop.stop_requested(); })) {
     ProgressMoment now = moment();
     lock.unlock();
     now.memoryBytes = residentBytes();

@@ -1,3 +1,4 @@
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -5,9 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <map>
 
-#include "converter/options.h"
+#include "converter/convert.h"
 #include "converter/programs/command_line.h"
 #include "converter/programs/conversion_summary.h"
 #include "converter/programs/plan.h"
@@ -18,7 +18,7 @@
 namespace strata {
 namespace {
 
-/// Every input stays open: 119 tiles are common, thousands happen.
+/// Every input stays open, and a scan may have thousands of tiles.
 void allowManyFiles() {
   rlimit files{};
   if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
@@ -26,13 +26,16 @@ void allowManyFiles() {
   ::setrlimit(RLIMIT_NOFILE, &files);
 }
 
-/// One line on a terminal; else lines on stderr, so that stdout holds the result alone.
+/// The cap is on resident memory, so freed blocks of points go back to the system at once.
+void returnFreedMemory() { ::mallopt(M_MMAP_THRESHOLD, 1 << 20); }
+
+/// Progress is one line on a terminal, and lines on stderr otherwise, so that stdout holds the result alone.
 ProgressDisplay::Style progressStyle(bool json) {
   if (json) return ProgressDisplay::Style::json;
   return ::isatty(STDERR_FILENO) != 0 ? ProgressDisplay::Style::terminal : ProgressDisplay::Style::lines;
 }
 
-/// Stderr is for the one line of an error where a program may be reading it.
+/// Warnings go to stdout unless stderr is a terminal, because a program that reads stderr expects an error there.
 void showWarning(ProgressDisplay::Style style, const std::string& message) {
   if (style == ProgressDisplay::Style::terminal)
     std::fprintf(stderr, "\r\033[Kwarning: %s\n", message.c_str());
@@ -42,7 +45,7 @@ void showWarning(ProgressDisplay::Style style, const std::string& message) {
     std::printf("%s\n", warningJson(message).c_str());
 }
 
-/// The command line with --resume, as a shell takes it.
+/// The command line with --resume added, quoted for a shell.
 std::string resumeCommand(int argc, char** argv) {
   std::string command;
   bool resumes = false;
@@ -77,16 +80,12 @@ int run(int argc, char** argv) {
   app.add_option("--node-points", options.nodePoints, "points a node holds")
       ->check(CLI::Range(kLeastNodePoints, kMostNodePoints))
       ->capture_default_str();
-  app.add_option("--sampling", options.sampling, "how a node's points are picked: ntree, poisson or random")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Sampling>{
-          {"ntree", Sampling::ntree}, {"poisson", Sampling::poisson}, {"random", Sampling::random}}))
-      ->default_str("ntree");
+  std::string lodColour = "first";
   app.add_option(
-         "--lod-colour", options.lodColour,
-         "what the points of coarse levels are drawn in: first, their own colour, or average, of what they stand for")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, LodColour>{{"first", LodColour::first}, {"average", LodColour::average}}))
-      ->default_str("first");
+         "--lod-colour", lodColour,
+         "the colour of points in coarse levels: first, their own, or average, the mean of those they represent")
+      ->check(CLI::IsMember({"first", "average"}))
+      ->capture_default_str();
   app.add_option("--temp", options.tempFolder, "folder for temporary points (default: beside the store)");
   app.add_option("--columns", options.source.columns,
                  "columns of text files, as in x,y,z,intensity,r,g,b; - skips one");
@@ -97,17 +96,20 @@ int run(int argc, char** argv) {
   app.add_flag("--plan", plan, "say what the conversion would take, and convert nothing; -o and --temp name the disks");
   app.add_flag("--json", json, "print one JSON object as the last line; progress as JSON lines on stderr");
   double progressSeconds = 10.0;
-  app.add_option("--progress-every", progressSeconds, "seconds between two lines of progress, but on a terminal")
+  app.add_option("--progress-every", progressSeconds,
+                 "seconds between two lines of progress where stderr is no terminal")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
   if (!parseCommandLine(app, argc, argv)) return 0;
   if (!plan && app.count("--output") == 0) throw UsageError("--output is required");
+  options.lodColour = lodColour == "average" ? LodColour::average : LodColour::first;
   options.memoryBytes = parseBytes("--memory", memory);
   if (options.memoryBytes < kLeastMemoryBytes)
     throw UsageError("--memory", "found " + memory + " (expected at least 512M)");
 
   listenForStop();
   allowManyFiles();
+  returnFreedMemory();
   const auto begin = std::chrono::steady_clock::now();
   const ProgressDisplay::Style style = progressStyle(json);
   ConvertControl control;

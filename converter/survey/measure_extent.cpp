@@ -8,17 +8,19 @@
 #include <cmath>
 #include <glm/gtx/component_wise.hpp>
 #include <map>
-#include <mutex>
+
+#include "core/mutex.h"
 
 namespace strata {
 namespace {
 
-constexpr std::size_t kMeasureBlock = 65536;
-constexpr std::size_t kSampleEvery = 101;  // points; every so many count for the percentiles, fewer of huge scans
+constexpr std::size_t kMeasureBlock = 65536;  // points
+constexpr std::size_t kSampleEvery = 101;     // every so many points one counts for the percentiles
 constexpr std::uint64_t kMostSamples = 500000;
 
 bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
+/// The longest side of the box that leaves out a hundredth of the points at either end of each axis.
 double typicalExtent(std::vector<glm::dvec3> points) {
   double longest = 0.0;
   std::vector<double> along(points.size());
@@ -33,13 +35,11 @@ double typicalExtent(std::vector<glm::dvec3> points) {
   return longest;
 }
 
-}  // namespace
-
-MeasuredSource measureSource(const PointSource& source, int threads, const ConvertControl& control) {
-  MeasuredSource result;
+MeasuredExtent measureExtent(const PointSource& source, int threads, const ConvertControl& control) {
+  MeasuredExtent result;
   std::map<int, std::uint64_t> magnitudes;
   std::vector<glm::dvec3> sample;
-  std::mutex mutex;
+  Mutex mutex;
   std::atomic<std::uint64_t> done{0};
   const std::size_t sampleEvery = std::max<std::uint64_t>(kSampleEvery, source.info().pointCount / kMostSamples | 1);
   tbb::task_arena arena(threads);
@@ -62,13 +62,14 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
         }
         control.progress({stage::kMeasure, done += block.count(), source.info().pointCount});
       }
-      const std::lock_guard lock(mutex);
+      const MutexLock lock(mutex);
       result.bounds.add(bounds);
       sample.insert(sample.end(), sampleHere.begin(), sampleHere.end());
       for (const auto& [exponent, count] : exponents) magnitudes[exponent] += count;
     });
   });
   result.typicalExtent = typicalExtent(std::move(sample));
+  // The median of the magnitudes, from their histogram.
   std::uint64_t total = 0, before = 0;
   for (const auto& [exponent, count] : magnitudes) total += count;
   for (const auto& [exponent, count] : magnitudes) {
@@ -79,6 +80,27 @@ MeasuredSource measureSource(const PointSource& source, int threads, const Conve
     }
   }
   return result;
+}
+
+}  // namespace
+
+bool headerBoundsUsable(const SourceInfo& info) {
+  if (!info.gridExact || info.bounds.empty() || !finite(info.bounds.min) || !finite(info.bounds.max)) return false;
+  if (!info.las) return true;
+  for (int axis = 0; axis < 3; ++axis)  // a LAS coordinate is a 32-bit integer
+    for (const double edge : {info.bounds.min[axis], info.bounds.max[axis]})
+      if (std::abs((edge - info.origin[axis]) / info.step[axis]) > 2147483649.0) return false;
+  return true;
+}
+
+MeasuredExtents measureExtents(const Sources& sources, bool all, int threads, const ConvertControl& control) {
+  MeasuredExtents out{std::vector<std::optional<MeasuredExtent>>(sources.size()), all};
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (sources[i]->info().pointCount == 0)
+      out.sources[i] = MeasuredExtent{};
+    else if (all || !headerBoundsUsable(sources[i]->info()))
+      out.sources[i] = measureExtent(*sources[i], threads, control);
+  return out;
 }
 
 }  // namespace strata

@@ -51,16 +51,15 @@ class SampledSource final : public PointSource {
 
 }  // namespace
 
-std::vector<std::unique_ptr<PointSource>> sampleSources(const std::vector<std::unique_ptr<PointSource>>& sources,
-                                                        std::uint64_t points) {
+Sources sampleSources(const Sources& sources, std::uint64_t points) {
   std::uint64_t total = 0, parts = 0;
   for (const auto& source : sources) {
     total += source->info().pointCount;
     parts += source->info().pointCount > 0 ? source->partCount() : 0;
   }
-  std::vector<std::unique_ptr<PointSource>> sampled;
+  Sources sampled;
   if (parts == 0) return sampled;
-  // Enough parts, where they are small, for the points wanted; else few, so that little is opened and sought.
+  // Small parts: as many as have the points wanted. Large parts: few, so that little is opened and sought.
   const std::uint64_t ofPart = std::max<std::uint64_t>(1, total / parts);
   const std::uint64_t chosen =
       points >= total ? parts

@@ -1,14 +1,12 @@
 #pragma once
-#include <memory>
-#include <vector>
+#include <cstdint>
 
 #include "io/scan/point_source.h"
 
 namespace strata {
 
-/// About `points` points out of all sources, taken from the beginnings of parts that are spread evenly over them; one
-/// sampled source for each that has any. The sources must outlive what is returned.
-std::vector<std::unique_ptr<PointSource>> sampleSources(const std::vector<std::unique_ptr<PointSource>>& sources,
-                                                        std::uint64_t points);
+/// Returns one source with some of the points of each source that has any, about `points` points in all, taken from the
+/// beginnings of parts that are spread evenly over the sources. The sources must outlive what is returned.
+Sources sampleSources(const Sources& sources, std::uint64_t points);
 
 }  // namespace strata

@@ -16,8 +16,6 @@ constexpr int kMostCubeBits = 52;        // integers that a double holds exactly
 constexpr double kCoarsestShare = 1e-7;  // of the typical extent: steps grow no further for the sake of far outliers
 constexpr double kGridTolerance = 1e-4;  // of a step: what decimal scale factors lose in binary
 
-bool finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 bool isWhole(double value) { return std::abs(value - std::round(value)) <= kGridTolerance; }
 
 /// The steps of one axis over all sources.
@@ -28,8 +26,7 @@ struct AxisGrid {
 };
 
 /// A step that divides every source's step and the distances between their origins, if a decimal one does.
-AxisGrid commonGrid(const std::vector<std::unique_ptr<PointSource>>& sources, const std::vector<glm::dvec3>& steps,
-                    int axis) {
+AxisGrid commonGrid(const Sources& sources, const std::vector<glm::dvec3>& steps, int axis) {
   AxisGrid grid;
   grid.anchor = sources.front()->info().origin[axis];
   double finest = steps.front()[axis];
@@ -66,14 +63,14 @@ std::string shortNumber(double value) {
 }
 
 /// The size of the last digit that most points' floats can tell: far outliers, whose floats are coarser, do not count.
-double typicalStep(const SourceInfo& info, const MeasuredSource& measured) {
+double typicalStep(const SourceInfo& info, const MeasuredExtent& measured) {
   const double ulp = measured.typicalMagnitude * std::ldexp(1.0, info.float64 ? -52 : -23);
   if (!info.float64) return powerOfTenBelow(0.5 * ulp);
   return powerOfTenBelow(std::max({ulp, measured.typicalExtent * 1e-9, 1e-9}));
 }
 
 /// The step of a source: its own, or for floats what most of its points can resolve.
-glm::dvec3 sourceStep(const SourceInfo& info, const std::optional<MeasuredSource>& measured) {
+glm::dvec3 sourceStep(const SourceInfo& info, const std::optional<MeasuredExtent>& measured) {
   if (info.gridExact) return info.step;
   glm::dvec3 step = info.step;
   if (measured && measured->typicalMagnitude > 0.0)
@@ -90,7 +87,7 @@ glm::dvec3 sourceStep(const SourceInfo& info, const std::optional<MeasuredSource
   return step;
 }
 
-Box sourceBounds(const PointSource& source, const std::optional<MeasuredSource>& measured) {
+Box sourceBounds(const PointSource& source, const std::optional<MeasuredExtent>& measured) {
   if (!measured) return source.info().bounds;
   Box box = measured->bounds;
   if (!box.empty()) {
@@ -100,7 +97,7 @@ Box sourceBounds(const PointSource& source, const std::optional<MeasuredSource>&
   return box;
 }
 
-PointLayout unitedLayout(const std::vector<std::unique_ptr<PointSource>>& sources) {
+PointLayout unitedLayout(const Sources& sources) {
   std::vector<Attribute> united;
   for (const auto& source : sources)
     for (const Attribute& a : source->info().layout.attributes()) {
@@ -148,7 +145,7 @@ void placeCube(const std::string& widest, const Box& bounds, const AxisGrid (&ax
 }
 
 /// Sources that write colours in different ways need the way kept with every point.
-void mapColours(const std::vector<std::unique_ptr<PointSource>>& sources, Survey& out) {
+void mapColours(const Sources& sources, Survey& out) {
   std::vector<std::uint8_t> shifts;
   bool differ = false;
   for (const auto& source : sources) {
@@ -189,21 +186,7 @@ std::optional<std::uint8_t> sampleColourShift(const PointSource& source) {
   return largest > 255 ? 8 : 0;
 }
 
-void ConvertControl::checkStop() const {
-  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Stopped();
-}
-
-bool headerBoundsUsable(const SourceInfo& info) {
-  if (!info.gridExact || info.bounds.empty() || !finite(info.bounds.min) || !finite(info.bounds.max)) return false;
-  if (!info.las) return true;
-  for (int axis = 0; axis < 3; ++axis)  // a LAS coordinate is a 32-bit integer
-    for (const double edge : {info.bounds.min[axis], info.bounds.max[axis]})
-      if (std::abs((edge - info.origin[axis]) / info.step[axis]) > 2147483649.0) return false;
-  return true;
-}
-
-Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
-              const std::vector<std::optional<MeasuredSource>>& measured) {
+Survey survey(const Sources& sources, const MeasuredExtents& measured) {
   Survey out;
   Box bounds;
   std::vector<glm::dvec3> steps;
@@ -212,13 +195,13 @@ Survey survey(const std::vector<std::unique_ptr<PointSource>>& sources,
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const SourceInfo& info = sources[i]->info();
     out.claimedPoints += info.pointCount;
-    const Box box = sourceBounds(*sources[i], measured[i]);
+    const Box box = sourceBounds(*sources[i], measured.sources[i]);
     if (!box.empty()) bounds.add(box);
     if (!box.empty() && !(glm::compMax(box.size()) <= widestExtent)) {
       widestExtent = glm::compMax(box.size());
       widest = info.path;
     }
-    steps.push_back(sourceStep(info, measured[i]));
+    steps.push_back(sourceStep(info, measured.sources[i]));
     out.grid.exact = out.grid.exact && info.gridExact;
     if (out.crs.empty()) out.crs = info.crs;
     if (!out.las && info.las) out.las = info.las;

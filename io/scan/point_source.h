@@ -69,6 +69,9 @@ class PointSource {
   virtual std::unique_ptr<PointReader> openIntegers(std::size_t part) const { return openPart(part); }
 };
 
+/// Scans that are taken as one cloud.
+using Sources = std::vector<std::unique_ptr<PointSource>>;
+
 /// Thrown when the user asked to stop.
 class Stopped : public Error {
  public:

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Measures what level of detail costs in picture quality, as docs/benchmarks/lod_quality.md reports it: converts red_rocks and a synthetic
-# city with each way of sampling and of colouring, and compares pictures of few points with the picture of all points.
+# Measures what level of detail costs in picture quality, as docs/benchmarks/lod_quality.md reports it: converts
+# red_rocks and a synthetic city with each way of colouring, and compares pictures of few points with the picture of all
+# points.
 # usage: tests/bench/lod_quality.sh RED_ROCKS.laz FOLDER [CITY_POINTS]
 #   The plots FOLDER/*/*.svg and tables FOLDER/*/*.tsv are the figures of docs/benchmarks/lod_quality.md; pictures lie beside them.
 set -euo pipefail
@@ -18,12 +19,10 @@ for scan in red_rocks city; do
   input=$red_rocks
   [ $scan = red_rocks ] || input=$city
   stores=()
-  for sampling in ntree poisson random; do
-    for colour in first average; do
-      store=$folder/${scan}_${sampling}_$colour.strata
-      convert "$input" "$store" --sampling $sampling --lod-colour $colour
-      stores+=("${sampling}_$colour=$store")
-    done
+  for colour in first average; do
+    store=$folder/${scan}_ntree_$colour.strata
+    convert "$input" "$store" --lod-colour $colour
+    stores+=("ntree_$colour=$store")
   done
   reference=$folder/${scan}_ntree_first.strata
   "$bin/lod_quality" compare "$folder/$scan" "$reference" "$here/${scan}_views.json" "${stores[@]}"

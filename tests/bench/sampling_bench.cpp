@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <ctime>
 
-#include "converter/build/sampling.h"
+#include "tests/bench/other_samplings.h"
 #include "tests/support/evenness.h"
 
 /// How even the prefixes of each sampling are on a dense plane, and what they cost.
@@ -10,7 +10,11 @@ int main() {
   using namespace strata::test;
   std::printf("1 M random points of a square, 65 536 kept, 3 rotations\n");
   std::printf("%-10s %12s %12s %14s\n", "sampling", "full levels", "anywhere", "CPU ns/point");
-  for (const Sampling sampling : {Sampling::ntree, Sampling::poisson, Sampling::random}) {
+  struct Way {
+    const char* name;
+    LevelOrder (*order)(const LocalPoints&, std::size_t, TreeScratch&);
+  };
+  for (const Way& way : {Way{"ntree", levelOrder}, Way{"poisson", poissonOrder}, Way{"random", randomOrder}}) {
     std::mt19937_64 random(1);
     TreeScratch scratch;
     Evenness worst;
@@ -18,14 +22,13 @@ int main() {
     for (int turn = 0; turn < 3; ++turn) {
       const Cloud cloud = turnedBox(random, {150.0, 150.0, 0.01}, 1000000, anyTurn(random));
       const std::clock_t begin = std::clock();
-      const LevelOrder levels = sampleNode(sampling, cloud.local(), 65536, scratch);
+      const LevelOrder levels = way.order(cloud.local(), 65536, scratch);
       seconds += static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
       const Evenness one = evennessOf(cloud, levels.order, levels.prefix);
       worst.fullLevels = std::max(worst.fullLevels, one.fullLevels);
       worst.anywhere = std::max(worst.anywhere, one.anywhere);
     }
-    std::printf("%-10s %12.2f %12.2f %14.1f\n", samplingName(sampling), worst.fullLevels, worst.anywhere,
-                seconds / 3e6 * 1e9);
+    std::printf("%-10s %12.2f %12.2f %14.1f\n", way.name, worst.fullLevels, worst.anywhere, seconds / 3e6 * 1e9);
   }
   return 0;
 }

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <random>
 
+#include "converter/convert.h"
 #include "converter/journal/build_folder.h"
-#include "converter/options.h"
 #include "core/error.h"
 #include "io/open_scans.h"
 #include "io/store/node_codec.h"
@@ -187,20 +187,14 @@ TEST(Converter, EveryPrefixOfAStoredDensePlaneIsMoreEvenThanRandomPoints) {
   EXPECT_LE(evenness.anywhere, 0.45);
 }
 
-struct Way {
-  Sampling sampling;
-  LodColour lodColour;
-};
-
-class EveryWay : public testing::TestWithParam<Way> {};
+class EveryColour : public testing::TestWithParam<LodColour> {};
 
 /// 900,000 points in 512 MiB make several chunks; the tree above them is merged.
-TEST_P(EveryWay, KeepsEverySourcePointExactlyOnceAndGivesTheSameBytesForAnyNumberOfThreads) {
+TEST_P(EveryColour, KeepsEverySourcePointExactlyOnceAndGivesTheSameBytesForAnyNumberOfThreads) {
   const test::TempFolder folder;
   ConvertOptions options;
   options.inputs = {"synthetic:city?points=900000&seed=3"};
-  options.sampling = GetParam().sampling;
-  options.lodColour = GetParam().lodColour;
+  options.lodColour = GetParam();
   options.memoryBytes = kLeastMemoryBytes;
   for (const int threads : {1, 2}) {
     options.threads = threads;
@@ -211,14 +205,11 @@ TEST_P(EveryWay, KeepsEverySourcePointExactlyOnceAndGivesTheSameBytesForAnyNumbe
   const Store store(options.output);
   const VerifyReport report = verifyStore(store);
   EXPECT_TRUE(report.problems.empty()) << report.problems.front();
-  EXPECT_EQ(store.info().sampling, samplingName(options.sampling));
+  EXPECT_EQ(store.info().sampling, "ntree");
   EXPECT_EQ(sortedPoints(store), sortedSourcePoints(options.inputs.front(), store.info()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Ways, EveryWay,
-                         testing::Values(Way{Sampling::ntree, LodColour::average},
-                                         Way{Sampling::poisson, LodColour::first},
-                                         Way{Sampling::random, LodColour::average}));
+INSTANTIATE_TEST_SUITE_P(Colours, EveryColour, testing::Values(LodColour::average, LodColour::first));
 
 TEST(Converter, AveragedColoursAreThoseOfTheSurroundingsAndOnlyOfNodesWithChildren) {
   // Black and white points of a plane in turn: what stands for many is grey, and exact colours are still there.

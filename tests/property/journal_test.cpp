@@ -12,7 +12,7 @@ namespace {
 
 std::vector<std::vector<std::byte>> payloadsOf(const Journal& journal) {
   std::vector<std::vector<std::byte>> payloads;
-  for (const Journal::Place& place : journal.found()) payloads.push_back(journal.payload(place));
+  for (const Journal::FoundRecord& record : journal.found()) payloads.push_back(journal.payload(record));
   return payloads;
 }
 

@@ -1,4 +1,4 @@
-#include "converter/build/sampling.h"
+#include "converter/build/level_order.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <set>
 
 #include "io/store/store.h"
+#include "tests/bench/other_samplings.h"
 #include "tests/support/evenness.h"
 
 namespace strata {
@@ -54,23 +55,24 @@ TEST(Sampling, EveryWayKeepsExactlyTheCapacityEachPointOnceWithRisingPrefixes) {
     const glm::dvec3 half = round % 3 == 0 ? kLine : round % 3 == 1 ? kPlane : kVolume;
     const Cloud cloud = turnedBox(random, half, random() % 3000, anyTurn(random));
     const std::size_t capacity = 1 + random() % 4000;
-    for (const Sampling sampling : {Sampling::poisson, Sampling::random}) {
-      const LevelOrder levels = sampleNode(sampling, cloud.local(), capacity, scratch);
+    for (const auto order : {poissonOrder, randomOrder}) {
+      const LevelOrder levels = order(cloud.local(), capacity, scratch);
       expectSound(levels, cloud.count(), std::min(capacity, cloud.count()));
     }
   }
   Cloud copies;
   for (auto& axis : copies.axis) axis.assign(5000, 77);
-  expectSound(sampleNode(Sampling::poisson, copies.local(), 1000, scratch), 5000, 1000);
+  expectSound(poissonOrder(copies.local(), 1000, scratch), 5000, 1000);
 }
 
 TEST(Sampling, NoTwoPointsOfAPoissonPrefixAreCloserThanItsDistance) {
   std::mt19937_64 random(6);
   const Cloud cloud = turnedBox(random, {100.0, 100.0, 0.01}, 60000, anyTurn(random));
   TreeScratch scratch;
-  const LevelOrder levels = sampleNode(Sampling::poisson, cloud.local(), 4000, scratch);
+  const LevelOrder levels = poissonOrder(cloud.local(), 4000, scratch);
+  const double rootSide = rootSideOf(cloud.local(), 4000, scratch);
   for (std::size_t l = 1; l + 1 < levels.prefix.size(); ++l) {
-    const double distance = levels.rootSide > 0.0 ? levels.rootSide * std::ldexp(1.0, -static_cast<int>(l)) : 0.0;
+    const double distance = rootSide > 0.0 ? rootSide * std::ldexp(1.0, -static_cast<int>(l)) : 0.0;
     for (std::uint32_t i = 0; i < levels.prefix[l]; ++i)
       for (std::uint32_t j = 0; j < i; ++j)
         ASSERT_GE(glm::length(cloud.position(levels.order[i]) - cloud.position(levels.order[j])), distance);
@@ -81,8 +83,8 @@ TEST(Sampling, EveryPointIsRepresentedByAKeptOneAndKeptOnesByThemselves) {
   std::mt19937_64 random(4);
   const Cloud cloud = turnedBox(random, kPlane, 20000, anyTurn(random));
   TreeScratch scratch;
-  for (const Sampling sampling : {Sampling::ntree, Sampling::poisson, Sampling::random}) {
-    const LevelOrder levels = sampleNode(sampling, cloud.local(), 2000, scratch);
+  for (const auto order : {levelOrder, poissonOrder, randomOrder}) {
+    const LevelOrder levels = order(cloud.local(), 2000, scratch);
     const std::vector<std::uint32_t> by = representedBy(scratch, cloud.count(), levels.order);
     ASSERT_EQ(by.size(), cloud.count());
     double farthest = 0.0;
@@ -91,7 +93,7 @@ TEST(Sampling, EveryPointIsRepresentedByAKeptOneAndKeptOnesByThemselves) {
       farthest = std::max(farthest, glm::length(cloud.position(i) - cloud.position(levels.order[by[i]])));
     }
     for (std::uint32_t place = 0; place < levels.order.size(); ++place) EXPECT_EQ(by[levels.order[place]], place);
-    if (sampling == Sampling::ntree) {
+    if (order == levelOrder) {
       EXPECT_LT(farthest, 6.0 * levels.spacing);
     }
   }

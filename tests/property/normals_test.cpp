@@ -11,7 +11,7 @@
 #include "converter/normals/nearest_points.h"
 #include "converter/normals/normal_regions.h"
 #include "converter/normals/plane_fit.h"
-#include "converter/options.h"
+#include "converter/convert.h"
 #include "core/octahedral.h"
 #include "io/store/node_codec.h"
 #include "tests/support/test_data.h"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "converter/options.h"
+#include "converter/convert.h"
 #include "io/store/node_codec.h"
 #include "io/synthetic/scenes.h"
 #include "io/synthetic/scanner.h"

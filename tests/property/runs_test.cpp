@@ -6,6 +6,7 @@
 #include <random>
 
 #include "converter/distribute/run_sorter.h"
+#include "converter/journal/records.h"
 #include "core/error.h"
 #include "tests/support/las_maker.h"
 #include "tests/support/run_program.h"
@@ -63,12 +64,12 @@ TEST_P(EveryShape, OfRecordComesBackByCellInOrder) {
     findVariation(block + packed.positionBytes(), packed.stride(), packed.attributeBytes, 3000, variation);
     sorter.add(block, 3000, variation);
   }
-  std::vector<WrittenRun> written = sorter.finish();
-  EXPECT_GT(written.size(), 1u);
-  appendRuns(journal, {0, 0}, {}, written);
+  RunsRecord record{0, 0, std::nullopt, sorter.finish()};
+  EXPECT_GT(record.runs.size(), 1u);
+  appendRuns(journal, record);
 
   RunSet set(grid);
-  for (WrittenRun& w : written) {
+  for (WrittenRun& w : record.runs) {
     EXPECT_LE(w.run.shape.stride(), packed.stride());
     set.runs.push_back(w.run);
   }
@@ -89,8 +90,8 @@ TEST_P(EveryShape, OfRecordComesBackByCellInOrder) {
   std::vector<std::byte> scratch;
   for (std::size_t first = 0; first < grid.cells();) {
     const std::size_t end = std::min(grid.cells(), first + 1 + first % 3);
-    for (const Extent& extent : cursor.take(first, end)) {
-      ExtentReader reader(spill, grid, packed, extent);
+    for (const Stretch& stretch : cursor.take(first, end)) {
+      StretchReader reader(spill, grid, packed, stretch);
       for (std::size_t piece = 1; reader.left() > 0; piece = piece * 2 + 1) {
         const std::size_t count = std::min<std::uint64_t>(piece, reader.left());
         std::vector<std::byte> out(count * packed.stride());
@@ -119,10 +120,10 @@ TEST_P(EveryShape, DamagedInTheFileIsFound) {
   AttributeVariation variation;
   findVariation(points.data() + packed.positionBytes(), packed.stride(), packed.attributeBytes, 5000, variation);
   sorter.add(points.data(), 5000, variation);
-  std::vector<WrittenRun> written = sorter.finish();
-  appendRuns(journal, {0, 0}, {}, written);
+  RunsRecord record{0, 0, std::nullopt, sorter.finish()};
+  appendRuns(journal, record);
   RunSet set(grid);
-  for (WrittenRun& w : written) set.runs.push_back(w.run);
+  for (WrittenRun& w : record.runs) set.runs.push_back(w.run);
 
   std::string bytes = test::readWhole(folder / "spill");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
@@ -130,8 +131,8 @@ TEST_P(EveryShape, DamagedInTheFileIsFound) {
   RunCursor cursor(set, journal);
   std::vector<std::byte> scratch, out(5000 * packed.stride());
   const auto readAll = [&] {
-    for (const Extent& extent : cursor.take(0, grid.cells()))
-      ExtentReader(spill, grid, packed, extent).read(extent.points, scratch, out.data());
+    for (const Stretch& stretch : cursor.take(0, grid.cells()))
+      StretchReader(spill, grid, packed, stretch).read(stretch.points, scratch, out.data());
   };
   EXPECT_THROW(readAll(), Error);
 }

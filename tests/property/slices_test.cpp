@@ -6,7 +6,7 @@
 #include <random>
 
 #include "converter/build/slices.h"
-#include "converter/options.h"
+#include "converter/convert.h"
 #include "core/error.h"
 #include "io/store/node_codec.h"
 #include "io/store/store_files.h"

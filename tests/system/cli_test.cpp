@@ -24,6 +24,12 @@ TEST(Programs, HelpGoesToStdoutAndExitsWithZero) {
   }
 }
 
+TEST(Programs, HelpIsTextThatATerminalCanShow) {
+  for (const char* program : kPrograms)
+    for (const unsigned char byte : runProgram(program, {"--help"}).out)
+      ASSERT_TRUE(byte == '\n' || (byte >= 0x20 && byte < 0x7f)) << program << " prints byte " << int{byte};
+}
+
 TEST(Programs, AnUnknownOptionIsWrongUsage) {
   for (const char* program : kPrograms) expectUsageError(runProgram(program, {"--no-such-option"}));
 }

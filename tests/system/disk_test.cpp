@@ -2,7 +2,7 @@
 #include <fstream>
 
 #include "converter/journal/build_folder.h"
-#include "converter/options.h"
+#include "converter/convert.h"
 #include "core/error.h"
 #include "tests/support/interrupted.h"
 

@@ -58,8 +58,9 @@ const std::map<std::string_view, WingRule> kRules{
 
     {"converter", {{"core", "io/scan", "io/store"}, {}}},
     {"converter/memory", {{"core"}, {"POSIX"}}},
-    {"converter/journal", {{"core", "io/file", "io/scan", "io/store", "converter"}, {"POSIX", "xxHash"}}},
     {"converter/survey", {{"core", "io/scan", "io/store", "converter"}, {"TBB"}}},
+    {"converter/journal",
+     {{"core", "io/file", "io/scan", "io/store", "converter", "converter/survey"}, {"POSIX", "xxHash"}}},
     {"converter/distribute",
      {{"core", "io/file", "io/scan", "io/store", "converter", "converter/memory", "converter/journal",
        "converter/survey"},

@@ -6,8 +6,6 @@
 namespace strata {
 namespace {
 
-using Sources = std::vector<std::unique_ptr<PointSource>>;
-
 std::uint64_t readAll(const Sources& sources) {
   std::uint64_t points = 0;
   PointBlock block;

@@ -1,31 +1,24 @@
-#include "converter/build/sampling.h"
+#include "tests/bench/other_samplings.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "core/random.h"
 #include "io/store/store.h"
 
-namespace strata {
+namespace strata::test {
 namespace {
 
-/// Candidates of a Poisson-disk sample a kept point: more of them leave fewer holes.
+/// A Poisson-disk sample tries so many candidates per kept point: more of them leave fewer holes.
 constexpr std::size_t kCandidates = 8;
-
-/// splitmix64 of Steele, Lea and Flood 2014.
-std::uint64_t mixed(std::uint64_t v) {
-  v += 0x9e3779b97f4a7c15;
-  v = (v ^ v >> 30) * 0xbf58476d1ce4e5b9;
-  v = (v ^ v >> 27) * 0x94d049bb133111eb;
-  return v ^ v >> 31;
-}
 
 /// The first `wanted` points in an order that looks random, or all.
 std::vector<std::uint32_t> shuffled(const LocalPoints& points, std::size_t wanted) {
   std::vector<std::pair<std::uint64_t, std::uint32_t>> hashes(points.count());
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     std::uint64_t hash = i;
-    for (const auto& axis : points.axis) hash = mixed(hash ^ static_cast<std::uint64_t>(axis[i]));
+    for (const auto& axis : points.axis) hash = splitMix64(hash ^ static_cast<std::uint64_t>(axis[i]));
     hashes[i] = {hash, static_cast<std::uint32_t>(i)};
   }
   wanted = std::min(wanted, hashes.size());
@@ -73,7 +66,7 @@ class CubeGrid {
   std::size_t slot(const glm::i64vec3& cube) const {
     const auto hash = static_cast<std::uint64_t>(cube.x) << 42 ^ static_cast<std::uint64_t>(cube.y) << 21 ^
                       static_cast<std::uint64_t>(cube.z);
-    return mixed(hash) & (heads_.size() - 1);
+    return splitMix64(hash) & (heads_.size() - 1);
   }
 
   const LocalPoints& points_;
@@ -81,8 +74,22 @@ class CubeGrid {
   const double side_;
 };
 
-/// Dart throwing with a distance that shrinks by sqrt(2) from round to round (Cook 1986; McCool and Fiume 1992).
-void poissonOrder(const LocalPoints& points, std::size_t capacity, double rootSide, LevelOrder& out) {
+/// Ends the last prefix.
+LevelOrder finished(LevelOrder out) {
+  const auto kept = static_cast<std::uint32_t>(out.order.size());
+  if (out.prefix.empty() || out.prefix.back() != kept) out.prefix.push_back(kept);
+  return out;
+}
+
+}  // namespace
+
+double rootSideOf(const LocalPoints& points, std::size_t capacity, TreeScratch& scratch) {
+  return points.count() == 0 ? 0.0 : buildTree(points, capacity, scratch).rootSide;
+}
+
+LevelOrder poissonOrder(const LocalPoints& points, std::size_t capacity, TreeScratch& scratch) {
+  LevelOrder out;
+  const double rootSide = rootSideOf(points, capacity, scratch);
   capacity = std::min(capacity, points.count());
   std::vector<std::uint32_t> left = shuffled(points, std::max(capacity, capacity * kCandidates));
   const double finest = 0.5 * std::min({points.step.x, points.step.y, points.step.z});
@@ -107,56 +114,15 @@ void poissonOrder(const LocalPoints& points, std::size_t capacity, double rootSi
     if (round % 2 == 0 && out.prefix.size() + 1 < NodeRecord::kMaxPrefixes)
       out.prefix.push_back(static_cast<std::uint32_t>(out.order.size()));
   }
+  return finished(std::move(out));
 }
 
-void randomOrder(const LocalPoints& points, std::size_t capacity, LevelOrder& out) {
+LevelOrder randomOrder(const LocalPoints& points, std::size_t capacity, TreeScratch& scratch) {
+  LevelOrder out;
+  rootSideOf(points, capacity, scratch);  // for the n-tree
   out.order = shuffled(points, capacity);
   for (std::size_t size = 1; size < out.order.size(); size *= 4) out.prefix.push_back(static_cast<std::uint32_t>(size));
+  return finished(std::move(out));
 }
 
-}  // namespace
-
-const char* samplingName(Sampling sampling) {
-  switch (sampling) {
-    case Sampling::ntree:
-      return "ntree";
-    case Sampling::poisson:
-      return "poisson";
-    case Sampling::random:
-      return "random";
-  }
-  return "";
-}
-
-LevelOrder sampleNode(Sampling sampling, const LocalPoints& points, std::size_t capacity, TreeScratch& scratch) {
-  LevelOrder levels = levelOrder(points, capacity, scratch);
-  if (sampling == Sampling::ntree || points.count() == 0) return levels;
-  LevelOrder other;
-  other.spacing = levels.spacing;
-  other.moments = levels.moments;
-  other.rootSide = levels.rootSide;
-  if (sampling == Sampling::poisson)
-    poissonOrder(points, capacity, levels.rootSide, other);
-  else
-    randomOrder(points, capacity, other);
-  const auto kept = static_cast<std::uint32_t>(other.order.size());
-  if (other.prefix.empty() || other.prefix.back() != kept) other.prefix.push_back(kept);
-  return other;
-}
-
-std::vector<std::uint32_t> representedBy(const TreeScratch& scratch, std::size_t count,
-                                         std::span<const std::uint32_t> order) {
-  constexpr std::uint32_t kNone = 0xffffffff;
-  std::vector<std::uint32_t> by(count, kNone);
-  for (std::size_t place = 0; place < order.size(); ++place) by[order[place]] = static_cast<std::uint32_t>(place);
-  const auto point = [&](std::size_t entry) { return static_cast<std::uint32_t>(scratch.entries[entry]); };
-  std::uint32_t current = kNone;
-  for (std::size_t i = 0; i < count && current == kNone; ++i) current = by[point(i)];
-  for (std::size_t i = 0; i < count; ++i) {
-    if (by[point(i)] != kNone) current = by[point(i)];
-    by[point(i)] = current;
-  }
-  return by;
-}
-
-}  // namespace strata
+}  // namespace strata::test
