@@ -4,7 +4,7 @@
 
 namespace strata {
 
-void Monitor::add(Clock::time_point now, const FrameFigures& frame, const StreamerStats& streamer) {
+void FrameHistory::add(Clock::time_point now, const FrameFigures& frame, const StreamerStats& streamer) {
   const auto beginWindow = [&] {
     windowBegin_ = now;
     bytesAtBegin_ = streamer.bytesRead;
@@ -35,12 +35,12 @@ void Monitor::add(Clock::time_point now, const FrameFigures& frame, const Stream
   }
 }
 
-double Monitor::latest(Series which) const {
+double FrameHistory::latest(Series which) const {
   const std::span<const float> all = series(which);
   return all.empty() ? 0.0 : static_cast<double>(all.back());
 }
 
-double Monitor::largest(Series which) const {
+double FrameHistory::largest(Series which) const {
   const std::span<const float> all = series(which);
   return all.empty() ? 0.0 : static_cast<double>(*std::max_element(all.begin(), all.end()));
 }

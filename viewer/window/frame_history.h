@@ -11,7 +11,7 @@
 namespace strata {
 
 /// How the last frames went: figures for small plots. For the render thread.
-class Monitor {
+class FrameHistory {
  public:
   using Clock = std::chrono::steady_clock;
 

@@ -16,7 +16,7 @@ constexpr float kDepthSide = 256.0f;  // pixels
 
 }  // namespace
 
-void InsidePanel::drawSection(std::size_t nodesDrawn) {
+void InspectorPanel::drawSection(std::size_t nodesDrawn) {
   ImGui::Checkbox("freeze the choice of nodes", &frozen_);
   ImGui::Checkbox("node cubes, by level", &cubes_);
   ImGui::Checkbox("contours, by class", &contours_);
@@ -35,13 +35,13 @@ void InsidePanel::drawSection(std::size_t nodesDrawn) {
   ImGui::Checkbox("coarse depth", &depth_);
 }
 
-const View& InsidePanel::chosenFor(const View& view) {
+const View& InspectorPanel::chosenFor(const View& view) {
   if (!frozen_) held_.reset();
   if (frozen_ && !held_) held_ = view;
   return held_ ? *held_ : view;
 }
 
-void InsidePanel::drawOver(const Layers& layers, const RenderList& list, const View& view) {
+void InspectorPanel::drawOver(const Layers& layers, const RenderList& list, const View& view) {
   if (cubes_ || contours_) drawNodes(layers, list, view);
   if (held_)
     for (const auto& [a, b] : frustumEdges(*held_, glm::distance(held_->eye, held_->target)))
@@ -49,7 +49,7 @@ void InsidePanel::drawOver(const Layers& layers, const RenderList& list, const V
   if (depth_) drawDepth(layers);
 }
 
-void InsidePanel::drawNodes(const Layers& layers, const RenderList& list, const View& view) {
+void InspectorPanel::drawNodes(const Layers& layers, const RenderList& list, const View& view) {
   finders_.resize(layers.stores().size());
   for (std::size_t i = 0; i < std::min(list.items.size(), kMostNodes); ++i) {
     const std::size_t s = layers.indexOfItem(i);
@@ -65,14 +65,14 @@ void InsidePanel::drawNodes(const Layers& layers, const RenderList& list, const 
   }
 }
 
-void InsidePanel::drawDepth(const Layers& layers) {
+void InspectorPanel::drawDepth(const Layers& layers) {
   layers.coarseDepth(depths_);
   drawCoarseDepth(depths_, depthPicture_);
-  screen_.upload(depthPicture_);
+  texture_.upload(depthPicture_);
   ImGui::SetNextWindowPos(ImVec2(0.5f * ImGui::GetIO().DisplaySize.x, 12.0f), ImGuiCond_FirstUseEver,
                           ImVec2(0.5f, 0.0f));
   if (ImGui::Begin("Coarse depth", &depth_, ImGuiWindowFlags_AlwaysAutoResize)) {
-    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(screen_.texture())),
+    ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.id())),
                  ImVec2(kDepthSide * uiScale(), kDepthSide * uiScale()));
     ImGui::TextDisabled("bright is near; what is dark hides nothing");
   }

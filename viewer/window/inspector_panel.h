@@ -6,17 +6,17 @@
 #include "core/render_list.h"
 #include "viewer/session/layers.h"
 #include "viewer/tools/node_shapes.h"
-#include "viewer/window/screen.h"
+#include "viewer/window/picture_texture.h"
 
 namespace strata {
 
 /// How the engine chooses, shown over the picture: cubes and contours of the drawn nodes, the coarse depth, and the
 /// view that nodes were chosen for while it is held still. For the render thread, with the GL context current.
-class InsidePanel {
+class InspectorPanel {
  public:
   static constexpr std::size_t kMostNodes = 1500;  ///< that are outlined
 
-  explicit InsidePanel(GlContext::GetProc getProc) : screen_(getProc) {}
+  explicit InspectorPanel(GlContext::GetProc getProc) : texture_(getProc) {}
 
   /// Draws the section of the panel that switches all this.
   void drawSection(std::size_t nodesDrawn);
@@ -34,7 +34,7 @@ class InsidePanel {
   std::vector<std::unique_ptr<NodeFinder>> finders_;  ///< by store, made when they are first needed
   std::vector<float> depths_;
   Picture depthPicture_;
-  Screen screen_;
+  PictureTexture texture_;
 };
 
 }  // namespace strata

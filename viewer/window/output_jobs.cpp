@@ -21,19 +21,19 @@ std::string sizeText(int width, int height) { return std::to_string(width) + " x
 
 }  // namespace
 
-std::optional<View> Keeper::draw(const View& view, const Scene& scene) {
-  const KeepRequest request = drawKeepPanel(state_, view);
-  if (request.savePath) savePath(view, scene);
+std::optional<View> OutputJobs::draw(const View& view, const OutputSource& source) {
+  const OutputRequest request = drawOutputPanel(state_, view);
+  if (request.savePath) savePath(view, source);
   if (request.openPath) openPath();
   if (request.record) toggleRecording(view);
   if (request.play) togglePlaying();
-  if (request.takePicture) startPicture(view, scene);
-  if (request.takeFilm) startFilm(view, scene);
+  if (request.takePicture) startPicture(view, source);
+  if (request.takeFilm) startFilm(view, source);
   return request.goTo;
 }
 
 template <class Start>
-void Keeper::start(const std::string& what, Start start) {
+void OutputJobs::start(const std::string& what, Start start) {
   stopPlaying();
   state_.path.endRecording();
   what_ = what;
@@ -45,24 +45,24 @@ void Keeper::start(const std::string& what, Start start) {
   }
 }
 
-void Keeper::startPicture(const View& view, const Scene& scene) {
-  PictureOrder order{state_.pictureFile, view, scene.draw, scene.selection};
+void OutputJobs::startPicture(const View& view, const OutputSource& source) {
+  PictureOrder order{state_.pictureFile, view, source.draw, source.selection};
   order.view.width = state_.pictureWidth;
   order.view.height = state_.pictureHeight;
-  if (state_.scalePoints) order.draw = scaledToPicture(scene.draw, view.height, state_.pictureHeight);
+  if (state_.scalePoints) order.draw = scaledToPicture(source.draw, view.height, state_.pictureHeight);
   start(order.file + ", " + sizeText(order.view.width, order.view.height) + " pixels",
-        [&] { work_ = std::make_unique<PictureTaker>(std::move(order), scene.layers, scene.rasterizer); });
+        [&] { work_ = std::make_unique<PictureTaker>(std::move(order), source.layers, source.rasterizer); });
 }
 
-void Keeper::startFilm(const View& view, const Scene& scene) {
+void OutputJobs::startFilm(const View& view, const OutputSource& source) {
   if (state_.path.keys().empty()) return;
   FilmOrder order{state_.filmFile, pathOf(view), state_.filmWidth, state_.filmHeight,
-                  scaledToPicture(scene.draw, view.height, state_.filmHeight)};
+                  scaledToPicture(source.draw, view.height, state_.filmHeight)};
   start(order.file + ", " + std::to_string(order.path.frames()) + " frames of " + sizeText(order.width, order.height),
-        [&] { work_ = std::make_unique<FilmTaker>(std::move(order), scene.layers, scene.rasterizer); });
+        [&] { work_ = std::make_unique<FilmTaker>(std::move(order), source.layers, source.rasterizer); });
 }
 
-void Keeper::goOn(const Scene& scene, bool cancel) {
+void OutputJobs::goOn(const OutputSource& source, bool cancel) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
   bool done = false;
   double share = 0.0;
@@ -86,32 +86,32 @@ void Keeper::goOn(const Scene& scene, bool cancel) {
     notice_ = "saved " + what_;
   else if (cancel && error_.empty())
     notice_ = "given up: " + what_;
-  if (done || cancel) endWork(scene);
+  if (done || cancel) endWork(source);
 }
 
-void Keeper::endWork(const Scene& scene) {
+void OutputJobs::endWork(const OutputSource& source) {
   work_ = std::monostate{};
-  scene.layers.setSelection(scene.selection);
+  source.layers.setSelection(source.selection);
 }
 
-CameraPath Keeper::pathOf(const View& view) const {
+CameraPath OutputJobs::pathOf(const View& view) const {
   CameraPath path = state_.path.path(view.fovY, state_.fps);
   path.speed = state_.speed;
   return path;
 }
 
-std::optional<CameraPath> Keeper::path(const View& view) const {
+std::optional<CameraPath> OutputJobs::path(const View& view) const {
   if (state_.path.keys().empty()) return std::nullopt;
   return pathOf(view);
 }
 
-void Keeper::setPath(const CameraPath& path) {
+void OutputJobs::setPath(const CameraPath& path) {
   state_.path.setKeys(path.keys);
   state_.fps = path.fps;
   state_.speed = path.speed;
 }
 
-void Keeper::toggleRecording(const View& view) {
+void OutputJobs::toggleRecording(const View& view) {
   if (state_.path.recording()) {
     state_.path.endRecording();
     notice_ = "the path has " + std::to_string(state_.path.keys().size()) + " keys";
@@ -122,13 +122,13 @@ void Keeper::toggleRecording(const View& view) {
   }
 }
 
-void Keeper::togglePlaying() {
+void OutputJobs::togglePlaying() {
   state_.path.endRecording();
   state_.playing = !state_.playing && !state_.path.keys().empty();
   played_ = 0.0;
 }
 
-std::optional<View> Keeper::play(const View& view, double seconds) {
+std::optional<View> OutputJobs::play(const View& view, double seconds) {
   if (!state_.playing) return std::nullopt;
   const CameraPath path = pathOf(view);
   View next = viewAt(path, PathClock(path).keyTime(path.keys.front().t + played_), view.width, view.height);
@@ -138,7 +138,7 @@ std::optional<View> Keeper::play(const View& view, double seconds) {
   return next;
 }
 
-void Keeper::savePath(const View& view, const Scene& scene) {
+void OutputJobs::savePath(const View& view, const OutputSource& source) {
   if (state_.path.keys().empty()) {
     error_ = "there is no path yet: K sets a key, R records";
     return;
@@ -150,14 +150,14 @@ void Keeper::savePath(const View& view, const Scene& scene) {
   try {
     writeText(state_.pathFile, cameraPathJson(pathOf(view)));
     notice_ = "saved " + state_.pathFile;
-    state_.benchCommand = "strata-bench " + quoted(scene.firstStore) + " --path " + quoted(state_.pathFile) + " -o " +
+    state_.benchCommand = "strata-bench " + quoted(source.firstStore) + " --path " + quoted(state_.pathFile) + " -o " +
                           quoted(state_.pathFile + ".bench");
   } catch (const Error& error) {
     error_ = error.what();
   }
 }
 
-void Keeper::openPath() {
+void OutputJobs::openPath() {
   try {
     const CameraPath path = readCameraPath(state_.pathFile);
     setPath(path);

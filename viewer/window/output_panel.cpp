@@ -38,7 +38,7 @@ void inputSize(const char* name, int& width, int& height, int largest) {
   ImGui::PopID();
 }
 
-void drawPictureSection(KeepState& state, const View& view, KeepRequest& request) {
+void drawPictureSection(OutputState& state, const View& view, OutputRequest& request) {
   inputSize("size", state.pictureWidth, state.pictureHeight, PictureOrder::kLargestSide);
   for (const int times : {1, 2, 4, 8}) {
     char label[16];
@@ -56,7 +56,7 @@ void drawPictureSection(KeepState& state, const View& view, KeepRequest& request
   if (ImGui::Button("take the picture")) request.takePicture = true;
 }
 
-void drawKeys(KeepState& state, const View& view, KeepRequest& request) {
+void drawKeys(OutputState& state, const View& view, OutputRequest& request) {
   const std::vector<CameraKey>& keys = state.path.keys();
   if (keys.empty()) {
     ImGui::TextDisabled("No keys yet: K sets one here, R records.");
@@ -94,7 +94,7 @@ void drawKeys(KeepState& state, const View& view, KeepRequest& request) {
   if (removed) state.path.removeKey(*removed);
 }
 
-void drawPathSection(KeepState& state, const View& view, KeepRequest& request) {
+void drawPathSection(OutputState& state, const View& view, OutputRequest& request) {
   if (ImGui::Button("set key (K)")) state.path.addKey(view);
   ImGui::SameLine();
   request.record = ImGui::Button(state.path.recording() ? "stop recording (R)" : "record (R)");
@@ -115,7 +115,7 @@ void drawPathSection(KeepState& state, const View& view, KeepRequest& request) {
   }
 }
 
-void drawFilmSection(KeepState& state, KeepRequest& request) {
+void drawFilmSection(OutputState& state, OutputRequest& request) {
   inputSize("film size", state.filmWidth, state.filmHeight, kLargestFilmSide);
   float fps = static_cast<float>(state.fps);
   if (ImGui::DragFloat("frames a second", &fps, 0.1f, 1.0f, 240.0f, "%.0f")) state.fps = static_cast<double>(fps);
@@ -132,8 +132,8 @@ bool drawFilmHeader() {
 
 }  // namespace
 
-KeepRequest drawKeepPanel(KeepState& state, const View& view) {
-  KeepRequest request;
+OutputRequest drawOutputPanel(OutputState& state, const View& view) {
+  OutputRequest request;
   if (!state.open) return request;
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos(ImVec2(0.5f * display.x, 0.12f * display.y), ImGuiCond_FirstUseEver, ImVec2(0.5f, 0.0f));

@@ -8,7 +8,7 @@
 namespace strata {
 
 /// What the window for pictures and camera paths shows and changes.
-struct KeepState {
+struct OutputState {
   bool open = false;
   std::string pictureFile = "picture.png";
   int pictureWidth = 4096, pictureHeight = 2560;
@@ -24,7 +24,7 @@ struct KeepState {
 };
 
 /// What the user asked for in it, for the app to do.
-struct KeepRequest {
+struct OutputRequest {
   bool takePicture = false, takeFilm = false;
   bool savePath = false, openPath = false;
   bool play = false;    ///< or stop playing
@@ -33,7 +33,7 @@ struct KeepRequest {
 };
 
 /// The window "Pictures and paths", where it is open; between Window::beginFrame() and finishFrame().
-KeepRequest drawKeepPanel(KeepState& state, const View& view);
+OutputRequest drawOutputPanel(OutputState& state, const View& view);
 
 /// What is being drawn into a file, how far that is and how long it will take. True when the user would rather not.
 bool drawWorkProgress(const std::string& what, double share, double seconds);

@@ -184,35 +184,35 @@ void line(const char* name, const std::string& value) {
   ImGui::TextUnformatted(value.c_str());
 }
 
-void plot(const char* name, const Monitor& monitor, Monitor::Series which, const std::string& value) {
-  const std::span<const float> series = monitor.series(which);
+void plot(const char* name, const FrameHistory& history, FrameHistory::Series which, const std::string& value) {
+  const std::span<const float> series = history.series(which);
   line(name, value);
   ImGui::PushID(name);
   ImGui::PlotLines("##plot", series.data(), static_cast<int>(series.size()), 0, nullptr, 0.0f,
-                   static_cast<float>(std::max(1.05 * monitor.largest(which), 1e-3)),
+                   static_cast<float>(std::max(1.05 * history.largest(which), 1e-3)),
                    ImVec2(0.9f * panelWidth(), kPlotHeight * uiScale()));
   ImGui::PopID();
 }
 
 void drawStats(const ViewerStats& stats) {
-  using Series = Monitor::Series;
-  const Monitor& monitor = stats.monitor;
-  plot("frame", monitor, Series::frameMs,
-       readableMs(stats.frameMs) + ", at most " + readableMs(monitor.largest(Series::frameMs)));
-  plot("points drawn", monitor, Series::pointsDrawn,
+  using Series = FrameHistory::Series;
+  const FrameHistory& history = stats.history;
+  plot("frame", history, Series::frameMs,
+       readableMs(stats.frameMs) + ", at most " + readableMs(history.largest(Series::frameMs)));
+  plot("points drawn", history, Series::pointsDrawn,
        readableCount(static_cast<double>(stats.draw.pointsDrawn)) + " of " +
            readableCount(static_cast<double>(stats.pointsInStores)));
-  plot("nodes missing", monitor, Series::missingNodes,
+  plot("nodes missing", history, Series::missingNodes,
        std::to_string(stats.missingNodes) + " of " + std::to_string(stats.nodesDrawn + stats.missingNodes) +
            (stats.complete ? "" : ", loading"));
-  plot("queue", monitor, Series::queue, std::to_string(stats.streamer.queueLength));
-  plot("from the disk", monitor, Series::readBytesPerSecond,
-       readableBytes(monitor.latest(Series::readBytesPerSecond)) + "/s");
+  plot("queue", history, Series::queue, std::to_string(stats.streamer.queueLength));
+  plot("from the disk", history, Series::readBytesPerSecond,
+       readableBytes(history.latest(Series::readBytesPerSecond)) + "/s");
   line("read", readableBytes(static_cast<double>(stats.streamer.bytesRead)));
   line("in memory", readableCount(stats.streamer.residentNodes) + " nodes, " +
                         readableBytes(static_cast<double>(stats.streamer.residentBytes)));
   char share[16];
-  std::snprintf(share, sizeof share, "%.1f %%", 100.0 * monitor.latest(Series::hitRate));
+  std::snprintf(share, sizeof share, "%.1f %%", 100.0 * history.latest(Series::hitRate));
   line("found there", share);
   line("moving (G)", modeName(stats.mode));
   if (stats.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(stats.draw.gpuBytes)));

@@ -37,7 +37,7 @@ struct ViewerStats {
   double frameMs = 0.0;  ///< smoothed
   DrawStats draw;
   StreamerStats streamer;
-  Monitor monitor;
+  FrameHistory history;
   std::size_t nodesDrawn = 0;
   std::uint32_t missingNodes = 0;
   bool complete = false;

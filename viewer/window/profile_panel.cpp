@@ -148,10 +148,10 @@ void ProfilePanel::drawPicture(const DrawOptions& options, Outcome& outcome) {
   if (!(look == look_)) {
     look_ = look;
     strata::drawProfile(profile_, window, options, picture_);
-    screen_.upload(picture_);
+    texture_.upload(picture_);
   }
   ImDrawList* canvas = ImGui::GetWindowDrawList();
-  canvas->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(screen_.texture())), corner,
+  canvas->AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture_.id())), corner,
                    ImVec2(corner.x + size.x, corner.y + size.y));
   drawScales({corner.x, corner.y});
   const auto id = ImGui::IsItemHovered() ? profilePointAt(picture_, cursor, kReach) : std::nullopt;

@@ -10,8 +10,8 @@
 #include "core/picture.h"
 #include "viewer/tools/measurement.h"
 #include "viewer/tools/profile_picture.h"
+#include "viewer/window/picture_texture.h"
 #include "viewer/window/profile_reader.h"
-#include "viewer/window/screen.h"
 
 namespace strata {
 
@@ -19,7 +19,7 @@ namespace strata {
 /// why not deeper. For the render thread, with the GL context current.
 class ProfilePanel {
  public:
-  explicit ProfilePanel(GlContext::GetProc getProc) : screen_(getProc) {}
+  explicit ProfilePanel(GlContext::GetProc getProc) : texture_(getProc) {}
 
   /// Opens the window for a profile of the measurements.
   void show(const Measurement& profile);
@@ -74,7 +74,7 @@ class ProfilePanel {
   std::optional<ProfileWindow> window_;  ///< none: all of it
   Look look_;
   Picture picture_;
-  Screen screen_;
+  PictureTexture texture_;
 };
 
 }  // namespace strata

@@ -33,7 +33,7 @@ void StateFile::write(const Window& window, const ShownState& state) {
                       {"notice", state.notice},
                       {"error", state.error},
                       {"items", nlohmann::json::object()}};
-  for (const auto& [name, place] : window.itemPlaces()) json["items"][name] = {place.x, place.y};
+  for (const auto& [name, place] : window.itemPositions()) json["items"][name] = {place.x, place.y};
   writeText(path_, json.dump() + "\n");
 }
 

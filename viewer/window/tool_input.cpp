@@ -8,17 +8,17 @@ namespace {
 constexpr int kClickReach = 6;  // pixels beside a point that still mean it
 
 /// The world point that is seen below the cursor, or within a click's reach of it.
-std::optional<glm::dvec3> pointUnder(const View& view, const Picture& frame, const glm::dvec2& cursor) {
-  const auto pixel = drawnPixelAt(frame, cursor, kClickReach);
+std::optional<glm::dvec3> pointUnder(const View& view, const Picture& picture, const glm::dvec2& cursor) {
+  const auto pixel = drawnPixelAt(picture, cursor, kClickReach);
   if (!pixel) return std::nullopt;
   const glm::dvec2 place = glm::ivec2(glm::floor(cursor)) == *pixel ? cursor : glm::dvec2(*pixel) + 0.5;
-  const float depth = frame.depth[static_cast<std::size_t>(pixel->y) * static_cast<std::size_t>(frame.width) +
-                                  static_cast<std::size_t>(pixel->x)];
+  const float depth = picture.depth[static_cast<std::size_t>(pixel->y) * static_cast<std::size_t>(picture.width) +
+                                    static_cast<std::size_t>(pixel->x)];
   return worldPoint(view, place, static_cast<double>(depth));
 }
 
-void moveByHand(CameraControl& control, ClipTool& clip, const WindowInput& input, const Picture& frame) {
-  const auto under = [&] { return pointUnder(control.view(), frame, input.cursor); };
+void moveByHand(CameraControl& control, ClipTool& clip, const WindowInput& input, const Picture& picture) {
+  const auto under = [&] { return pointUnder(control.view(), picture, input.cursor); };
   if (input.leftPressed && clip.press(control.view(), input.cursor))
     control.release();
   else if (input.leftPressed)
@@ -35,10 +35,10 @@ void moveByHand(CameraControl& control, ClipTool& clip, const WindowInput& input
 
 }  // namespace
 
-void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, const SeenScene& seen) {
+void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, const ScreenContent& seen) {
   control.resize(input.width, input.height);
   control.advance(input.seconds);
-  moveByHand(control, tools.clip, input, seen.frame);
+  moveByHand(control, tools.clip, input, seen.picture);
   const View& view = control.view();
   if (input.frameAll) control.glideTo(framed(view, seen.bounds));
   if (input.front) control.glideTo(standardView(view, seen.bounds, StandardView::front));
@@ -47,10 +47,10 @@ void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, 
   if (input.nextMode) control.setMode(nextMode(control.mode()));
   if (input.orthographic) control.setView(withOrthographic(view, !view.orthographic));
   if (input.doubleClicked && !tools.measure.active())
-    if (const auto point = pointUnder(view, seen.frame, input.cursor)) control.glideTo(approached(view, *point));
+    if (const auto point = pointUnder(view, seen.picture, input.cursor)) control.glideTo(approached(view, *point));
 }
 
-std::string ToolHand::use(ToolsState& tools, const WindowInput& input, const View& view, const SeenScene& seen) {
+std::string ToolInput::use(ToolsState& tools, const WindowInput& input, const View& view, const ScreenContent& seen) {
   if (input.measure) tools.measure.begin(MeasureKind::distance);
   if (input.profile) tools.measure.begin(MeasureKind::profile);
   if (input.clipBox) tools.clip.add(boxInView(view, seen.bounds));
@@ -59,10 +59,10 @@ std::string ToolHand::use(ToolsState& tools, const WindowInput& input, const Vie
   const bool onHandle = tools.clip.held().has_value();
   if (!input.dragging) tools.clip.release();
   if (input.clicked && !onHandle && seen.list != nullptr) {
-    if (const auto point = drawnPointAt(*seen.list, seen.frame, input.cursor, kClickReach)) {
+    if (const auto point = drawnPointAt(*seen.list, seen.picture, input.cursor, kClickReach)) {
       const NodeData& node = *seen.list->items[point->item].node;
       lookup_.ask(seen.layers.stores()[seen.layers.indexOfItem(point->item)], node.key, point->point,
-                  pointUnder(view, seen.frame, input.cursor).value_or(node.origin));
+                  pointUnder(view, seen.picture, input.cursor).value_or(node.origin));
     }
   }
   std::string error;

@@ -13,21 +13,21 @@
 namespace strata {
 
 /// What is on the screen.
-struct SeenScene {
+struct ScreenContent {
   const Layers& layers;
-  const RenderList* list;  ///< that the frame was drawn from; null before the first
-  const Picture& frame;
+  const RenderList* list;  ///< that the picture was drawn from; null before the first
+  const Picture& picture;
   const Box& bounds;  ///< of the scan
 };
 
 /// Camera and clip boxes, by mouse and keys; `seconds` of the input later.
-void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, const SeenScene& seen);
+void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, const ScreenContent& seen);
 
 /// Clicks and keys of picking, measuring and clipping. For the render thread.
-class ToolHand {
+class ToolInput {
  public:
   /// Once a frame. What went wrong; empty where nothing did.
-  std::string use(ToolsState& tools, const WindowInput& input, const View& view, const SeenScene& seen);
+  std::string use(ToolsState& tools, const WindowInput& input, const View& view, const ScreenContent& seen);
   /// The disk has been asked about a point and has not yet answered.
   bool busy() const { return lookup_.pending(); }
 

@@ -22,10 +22,10 @@
 #include "viewer/window/output_jobs.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/panel.h"
+#include "viewer/window/picture_texture.h"
 #include "viewer/window/profile_panel.h"
 #include "viewer/window/progressive_panel.h"
 #include "viewer/window/scan_conversion.h"
-#include "viewer/window/screen.h"
 #include "viewer/window/state_file.h"
 #include "viewer/window/tool_input.h"
 #include "viewer/window/window.h"
@@ -62,9 +62,9 @@ class ViewerApp {
         scene_(surveyStores(layers_.stores())),
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
                 options.screenshot.empty() && options.picture.empty()),
-        screen_(Window::getProc()),
+        texture_(Window::getProc()),
         profile_(Window::getProc()),
-        inside_(Window::getProc()),
+        inspector_(Window::getProc()),
         stateFile_(options.state),
         rasterizer_(createWindowRasterizer(options, layers_)),
         progressive_(dynamic_cast<ProgressiveRasterizer*>(rasterizer_.get())),
@@ -72,9 +72,9 @@ class ViewerApp {
     View first = control_.view();
     first.nearPlane = std::min(first.nearPlane, kNearShare * scene_.bounds.diagonal());
     control_.setView(first);
-    keeper_.state().pathFile = layerNames({options.stores.front()}) + ".path.json";
-    keeper_.state().filmFile = layerNames({options.stores.front()}) + ".mp4";
-    keeper_.state().pictureFile = layerNames({options.stores.front()}) + ".png";
+    outputJobs_.state().pathFile = layerNames({options.stores.front()}) + ".path.json";
+    outputJobs_.state().filmFile = layerNames({options.stores.front()}) + ".mp4";
+    outputJobs_.state().pictureFile = layerNames({options.stores.front()}) + ".png";
     settings_.selection = options.streamer.selection;
     settings_.draw = drawOptionsFor(layers_.stores().front()->info(), scene_.bounds, options.colour);
     applyDrawFlags(options.draw, settings_.draw);
@@ -117,7 +117,7 @@ class ViewerApp {
     tools_.clip.boxes() = project.clipBoxes;
     tools_.measure.kept() = project.measurements;
     keptBefore_ = project.measurements.size();
-    if (project.path) keeper_.setPath(*project.path);
+    if (project.path) outputJobs_.setPath(*project.path);
     control_.setView(project.view);
     select();
     layers_.setShown(tools_.shown);
@@ -127,7 +127,7 @@ class ViewerApp {
     bool idle = false;
     while (!window_.closed()) {
       const WindowInput input = window_.beginFrame(idle ? kIdleWait : 0.0);
-      if (keeper_.working()) {
+      if (outputJobs_.working()) {
         work(input);
         idle = input.hidden;
         sayState(input, false);
@@ -145,15 +145,15 @@ class ViewerApp {
       stats_.flying = !input.fly.still() || control_.mode() == MoveMode::fly;
       if (input.help) helpOpen_ = !helpOpen_;
       if (input.save) saveProject();
-      if (const std::string error = hand_.use(tools_, input, control_.view(), seen()); !error.empty())
+      if (const std::string error = toolInput_.use(tools_, input, control_.view(), seen()); !error.empty())
         stats_.error = error;
-      useKeeper(input);
+      useOutputKeys(input);
       drawFrame(input.width, input.height);
       const bool changed = drawOver();
       window_.finishFrame();
       window_.present();
       idle = input.idle() && !changed && stats_.complete && isFinished(stats_.draw) && !control_.gliding() &&
-             !hand_.busy() && !profile_.reading() && !window_.panelInUse() && !keeper_.busy();
+             !toolInput_.busy() && !profile_.reading() && !window_.panelInUse() && !outputJobs_.busy();
       sayState(input, idle);
     }
   }
@@ -172,7 +172,7 @@ class ViewerApp {
       window_.finishFrame();
       uploading = !isFinished(stats_.draw);
     }
-    writePng(file, screen_.read(input.width, input.height));
+    writePng(file, texture_.readBackBuffer(input.width, input.height));
   }
 
   /// The scene alone, in any size.
@@ -201,24 +201,24 @@ class ViewerApp {
                                .measured = tools_.measure.kept().size(),
                                .clipBoxes = tools_.clip.boxes().size(),
                                .hiddenClasses = tools_.classes.size() - tools_.classes.count(),
-                               .pathKeys = keeper_.state().path.keys().size(),
-                               .recording = keeper_.state().path.recording(),
-                               .playing = keeper_.state().playing,
-                               .working = keeper_.working(),
+                               .pathKeys = outputJobs_.state().path.keys().size(),
+                               .recording = outputJobs_.state().path.recording(),
+                               .playing = outputJobs_.state().playing,
+                               .working = outputJobs_.working(),
                                .drawn = framesDrawn_,
                                .picked = tools_.picked ? tools_.picked->coordinates : std::string(),
                                .notice = stats_.notice,
                                .error = stats_.error});
   }
 
-  Keeper::Scene keeperScene() {
+  OutputSource outputSource() {
     return {layers_, *rasterizer_, settings_.draw, settings_.selection, options_.stores.front()};
   }
 
   /// A frame of the progress while a picture or a film is being drawn; behind it stands the newest frame.
   void work(const WindowInput& input) {
-    if (!input.hidden) window_.drawPicture(screen_.texture());
-    keeper_.goOn(keeperScene(), input.drop);
+    if (!input.hidden) window_.drawPicture(texture_.id());
+    outputJobs_.goOn(outputSource(), input.drop);
     tell();
     drawError(stats_.error);
     window_.finishFrame();
@@ -226,52 +226,52 @@ class ViewerApp {
   }
 
   void tell() {
-    if (const std::string notice = keeper_.takeNotice(); !notice.empty()) stats_.notice = notice;
-    if (const std::string error = keeper_.takeError(); !error.empty()) stats_.error = error;
+    if (const std::string notice = outputJobs_.takeNotice(); !notice.empty()) stats_.notice = notice;
+    if (const std::string error = outputJobs_.takeError(); !error.empty()) stats_.error = error;
   }
 
   /// Keys of camera paths, and the path that is being recorded or played.
-  void useKeeper(const WindowInput& input) {
-    KeepState& state = keeper_.state();
+  void useOutputKeys(const WindowInput& input) {
+    OutputState& state = outputJobs_.state();
     if (input.pictures) state.open = !state.open;
-    if (input.takePicture) keeper_.startPicture(control_.view(), keeperScene());
+    if (input.takePicture) outputJobs_.startPicture(control_.view(), outputSource());
     if (input.pathKey) {
-      keeper_.addKey(control_.view());
+      outputJobs_.addKey(control_.view());
       stats_.notice = "key " + std::to_string(state.path.keys().size()) + " of the camera path is set";
     }
-    if (input.record) keeper_.toggleRecording(control_.view());
-    if (input.play) keeper_.togglePlaying();
+    if (input.record) outputJobs_.toggleRecording(control_.view());
+    if (input.play) outputJobs_.togglePlaying();
     const bool handOn = input.dragging || input.wheel != 0.0 || !input.fly.still() || control_.gliding();
-    if (handOn) keeper_.stopPlaying();
-    if (const auto view = keeper_.play(control_.view(), input.seconds)) control_.setView(*view);
-    keeper_.record(control_.view(), input.seconds);
+    if (handOn) outputJobs_.stopPlaying();
+    if (const auto view = outputJobs_.play(control_.view(), input.seconds)) control_.setView(*view);
+    outputJobs_.record(control_.view(), input.seconds);
   }
 
   /// What is on the screen, which the hand means.
-  SeenScene seen() const { return {layers_, list_, frame_, scene_.bounds}; }
+  ScreenContent seen() const { return {layers_, list_, picture_, scene_.bounds}; }
 
   void drawFrame(int width, int height) {
     control_.resize(width, height);
     const auto start = std::chrono::steady_clock::now();
     const View ahead = motion_.ahead(control_.view(), start);
-    const View& chosenFor = inside_.chosenFor(control_.view());
+    const View& chosenFor = inspector_.chosenFor(control_.view());
     layers_.setView(chosenFor, chosenFor == control_.view() ? ahead : chosenFor);
     const RenderList& list = layers_.beginFrame();
     list_ = &list;
     for (std::size_t i = 0; i < list.items.size(); ++i) tools_.census.add(layers_.indexOfItem(i), *list.items[i].node);
     settings_.draw.clip = clipOf(tools_.clip.boxes(), planes_);
     settings_.draw.classes = tools_.classes;
-    stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, frame_);
+    stats_.draw = rasterizer_->draw(list, control_.view(), settings_.draw, picture_);
     ++framesDrawn_;
-    screen_.upload(frame_);
-    window_.drawPicture(screen_.texture());
+    texture_.upload(picture_);
+    window_.drawPicture(texture_.id());
     const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     stats_.frameMs = stats_.frameMs == 0.0 ? ms : stats_.frameMs + kSmoothing * (ms - stats_.frameMs);
     stats_.missingNodes = list.missingNodes;
     stats_.complete = layers_.complete();
     stats_.streamer = layers_.stats();
     stats_.nodesDrawn = list.items.size();
-    stats_.monitor.add(start, {ms, stats_.draw.pointsDrawn, list.items.size(), list.missingNodes}, stats_.streamer);
+    stats_.history.add(start, {ms, stats_.draw.pointsDrawn, list.items.size(), list.missingNodes}, stats_.streamer);
     limits_.classes = tools_.census.present();
     sayDamage();
   }
@@ -310,7 +310,7 @@ class ViewerApp {
 
   bool drawSettingsPanel() {
     settings_.fovY = control_.view().fovY;
-    const bool changed = drawPanel(settings_, stats_, limits_, [this] { inside_.drawSection(stats_.nodesDrawn); });
+    const bool changed = drawPanel(settings_, stats_, limits_, [this] { inspector_.drawSection(stats_.nodesDrawn); });
     if (!changed) return false;
     if (settings_.fovY != control_.view().fovY) {
       View view = control_.view();
@@ -326,7 +326,7 @@ class ViewerApp {
   bool drawOver() {
     drawClipBoxes(tools_.clip, control_.view());
     drawMeasurements(tools_.measure, control_.view(), tools_.picked);
-    if (list_ != nullptr) inside_.drawOver(layers_, *list_, control_.view());
+    if (list_ != nullptr) inspector_.drawOver(layers_, *list_, control_.view());
     drawSpinner(stats_);
     drawHint(tools_.measure.hint());
     drawFlySpeed(stats_);
@@ -344,12 +344,12 @@ class ViewerApp {
       save(tools_.exportBase + ".geojson", measurementsGeoJson(kept, layers_.stores().front()->info().crs));
     if (request.saveProject) saveProject();
     drawProfile(request.showProfile);
-    const auto keepAsks = keeper_.draw(control_.view(), keeperScene());
-    if (keepAsks) control_.glideTo(*keepAsks);
+    const auto outputAsks = outputJobs_.draw(control_.view(), outputSource());
+    if (outputAsks) control_.glideTo(*outputAsks);
     tell();
     drawHelp(helpOpen_);
     drawError(stats_.error);
-    return changed || request.layersChanged || request.pictureChanged || request.goTo || keepAsks;
+    return changed || request.layersChanged || request.pictureChanged || request.goTo || outputAsks;
   }
 
   /// The window of a profile, which opens by itself for one that was just made.
@@ -389,8 +389,8 @@ class ViewerApp {
                                   .pointsPerPixel = settings_.selection.pointsPerPixel,
                                   .bookmarks = tools_.bookmarks,
                                   .measurements = tools_.measure.kept(),
-                                  .path = keeper_.path(control_.view())}));
-    if (!keeper_.state().path.keys().empty()) keeper_.savePath(control_.view(), keeperScene());
+                                  .path = outputJobs_.path(control_.view())}));
+    if (!outputJobs_.state().path.keys().empty()) outputJobs_.savePath(control_.view(), outputSource());
   }
 
   const ViewerOptions options_;
@@ -398,9 +398,9 @@ class ViewerApp {
   Layers layers_;
   const Scene scene_;
   Window window_;
-  Screen screen_;
+  PictureTexture texture_;
   ProfilePanel profile_;
-  InsidePanel inside_;
+  InspectorPanel inspector_;
   StateFile stateFile_;
   std::unique_ptr<Rasterizer> rasterizer_;
   ProgressiveRasterizer* progressive_;  ///< rasterizer_, or null where that draws everything in each frame
@@ -413,14 +413,14 @@ class ViewerApp {
   std::uint64_t damageSaid_ = 0;          ///< nodes given up that the user was told of
   std::vector<bool> lostShown_;           ///< by path asked for: what the project said
   ToolsState tools_;
-  ToolHand hand_;
-  Keeper keeper_;
+  ToolInput toolInput_;
+  OutputJobs outputJobs_;
   std::vector<glm::dvec4> planes_;  ///< of the command line
   std::size_t keptBefore_ = 0;      ///< measurements in the last frame
   bool helpOpen_ = false;
   std::uint64_t framesDrawn_ = 0;
-  const RenderList* list_ = nullptr;  ///< that frame_ was drawn from; valid until the next drawFrame()
-  Picture frame_;
+  const RenderList* list_ = nullptr;  ///< that picture_ was drawn from; valid until the next drawFrame()
+  Picture picture_;
 };
 
 }  // namespace

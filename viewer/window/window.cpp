@@ -182,7 +182,7 @@ void readKeys(const Keys& keys, WindowInput& input) {
 struct Window::Parts {
   GLFWwindow* window = nullptr;
   Hand hand;
-  ItemPlaces places;
+  ItemPositions places;
 
   Parts(const std::string& title, int width, int height, bool visible) {
     if (glfwInit() != GLFW_TRUE) throw windowError();
@@ -281,7 +281,7 @@ const InputCounts& Window::inputCounts() const { return parts_->hand.counts; }
 
 glm::dvec2 Window::cursor() const { return parts_->hand.cursor; }
 
-const ItemPlaces& Window::itemPlaces() const { return parts_->places; }
+const ItemPositions& Window::itemPositions() const { return parts_->places; }
 
 bool Window::focused() const { return glfwGetWindowAttrib(parts_->window, GLFW_FOCUSED) == GLFW_TRUE; }
 

@@ -72,7 +72,7 @@ class Window {
   const InputCounts& inputCounts() const;
   bool focused() const;
   glm::dvec2 cursor() const;  ///< window units
-  const ItemPlaces& itemPlaces() const;
+  const ItemPositions& itemPositions() const;
   /// Puts a texture behind everything.
   void drawPicture(unsigned texture);
   /// Draws the panel into the back buffer.

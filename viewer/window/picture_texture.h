@@ -5,20 +5,20 @@
 
 namespace strata {
 
-/// The little OpenGL that showing a finished frame takes. The window's context is current wherever this is used.
-class Screen {
+/// The OpenGL texture in which a finished picture is shown. Every member needs the window's context to be current.
+class PictureTexture {
  public:
   /// Throws Error when a function is missing.
-  explicit Screen(GlContext::GetProc getProc);
-  ~Screen();
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
+  explicit PictureTexture(GlContext::GetProc getProc);
+  ~PictureTexture();
+  PictureTexture(const PictureTexture&) = delete;
+  PictureTexture& operator=(const PictureTexture&) = delete;
 
   /// Copies the picture into the texture, row 0 first.
-  void upload(const Picture& frame);
-  unsigned texture() const { return texture_; }
-  /// What stands in the back buffer.
-  Image read(int width, int height) const;
+  void upload(const Picture& picture);
+  unsigned id() const { return texture_; }
+  /// Copies the window's back buffer, row 0 on top.
+  Image readBackBuffer(int width, int height) const;
 
  private:
   struct Functions {

@@ -1,4 +1,4 @@
-#include "viewer/window/screen.h"
+#include "viewer/window/picture_texture.h"
 
 #include <algorithm>
 #include <string>
@@ -19,7 +19,7 @@ constexpr unsigned kUnpackAlignment = 0x0CF5, kPackAlignment = 0x0D05;
 
 }  // namespace
 
-Screen::Screen(GlContext::GetProc getProc) {
+PictureTexture::PictureTexture(GlContext::GetProc getProc) {
   const auto load = [getProc](auto& function, const char* name) {
     function = reinterpret_cast<std::remove_reference_t<decltype(function)>>(getProc(name));
     if (function == nullptr) throw Error("OpenGL", std::string("function is missing, found no ") + name);
@@ -39,21 +39,22 @@ Screen::Screen(GlContext::GetProc getProc) {
   gl_.bindTexture(kTexture2D, 0);
 }
 
-Screen::~Screen() { gl_.deleteTextures(1, &texture_); }
+PictureTexture::~PictureTexture() { gl_.deleteTextures(1, &texture_); }
 
-void Screen::upload(const Picture& frame) {
+void PictureTexture::upload(const Picture& picture) {
   gl_.bindTexture(kTexture2D, texture_);
   gl_.pixelStorei(kUnpackAlignment, 4);
-  if (frame.width != width_ || frame.height != height_)
-    gl_.texImage2D(kTexture2D, 0, kRgba8, frame.width, frame.height, 0, kRgba, kUnsignedByte, frame.colour.data());
+  if (picture.width != width_ || picture.height != height_)
+    gl_.texImage2D(kTexture2D, 0, kRgba8, picture.width, picture.height, 0, kRgba, kUnsignedByte,
+                   picture.colour.data());
   else
-    gl_.texSubImage2D(kTexture2D, 0, 0, 0, frame.width, frame.height, kRgba, kUnsignedByte, frame.colour.data());
-  width_ = frame.width;
-  height_ = frame.height;
+    gl_.texSubImage2D(kTexture2D, 0, 0, 0, picture.width, picture.height, kRgba, kUnsignedByte, picture.colour.data());
+  width_ = picture.width;
+  height_ = picture.height;
   gl_.bindTexture(kTexture2D, 0);
 }
 
-Image Screen::read(int width, int height) const {
+Image PictureTexture::readBackBuffer(int width, int height) const {
   Image image{width, height,
               std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.pixelStorei(kPackAlignment, 4);
