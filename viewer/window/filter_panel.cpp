@@ -3,12 +3,12 @@
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "render/picture/colour_map.h"
 #include "viewer/session/class_census.h"
 #include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
+#include "viewer/window/widgets.h"
 
 namespace strata {
 namespace {
@@ -17,9 +17,9 @@ constexpr std::uint32_t kBoxColour = 0xff60d0f0u;
 constexpr std::uint32_t kCutoutColour = 0xff7080ffu;
 constexpr std::uint32_t kHeldColour = 0xffffffffu;
 constexpr float kHandlePx = 5.0f;
-constexpr double kDragStep = 0.002;  // of the box's size, a pixel
+constexpr double kDragStep = 0.002;  // of the box's size, for a drag of one pixel
 
-/// Three numbers that can be dragged and typed. True when one was changed.
+/// Draws three numbers that can be dragged and typed. True when one was changed.
 bool drawCorner(const char* label, glm::dvec3& corner, double step) {
   double numbers[3] = {corner.x, corner.y, corner.z};
   const bool changed =
@@ -28,14 +28,12 @@ bool drawCorner(const char* label, glm::dvec3& corner, double step) {
   return changed;
 }
 
-/// True when something was changed; `remove` when the box is to go.
+/// Draws one box of the list. True when something was changed; `remove` turns true when the box is to go.
 bool drawBox(ClipBox& box, bool& remove) {
   bool changed = ImGui::Checkbox("##on", &box.on);
   ImGui::SameLine();
-  char name[64];
-  std::snprintf(name, sizeof name, "%s", box.name.c_str());
   ImGui::SetNextItemWidth(90.0f * uiScale());
-  if (ImGui::InputText("##name", name, sizeof name)) box.name = name;
+  inputText("##name", box.name);
   ImGui::SameLine();
   int mode = box.cutout ? 1 : 0;
   ImGui::SetNextItemWidth(120.0f * uiScale());
@@ -64,7 +62,7 @@ bool drawClipSection(ClipTool& tool, const View& view, const Box& bounds) {
   if (tool.boxes().size() < Clip::kMost) {
     if (ImGui::SmallButton("new clip box")) changed = tool.add(boxInView(view, bounds));
   } else {
-    ImGui::TextDisabled("%zu boxes are the most", Clip::kMost);
+    ImGui::TextDisabled("at most %zu boxes", Clip::kMost);
   }
   for (std::size_t i = 0; i < tool.boxes().size(); ++i) {
     ImGui::PushID(static_cast<int>(2000 + i));

@@ -11,12 +11,12 @@ bool has(const std::vector<InputEvent>& frame, Kind kind) {
   return std::any_of(frame.begin(), frame.end(), [kind](const InputEvent& e) { return e.kind == kind; });
 }
 
-/// Whether a frame that has seen `frame` can see `event` too.
+/// True when a frame that sees the events `frame` can see `event` too.
 bool fits(const std::vector<InputEvent>& frame, const InputEvent& event) {
   switch (event.kind) {
     case Kind::cursor:
       return !has(frame, Kind::button) && !has(frame, Kind::wheel);
-    case Kind::button:  // what is dragged moves before it is let go
+    case Kind::button:  // a drag reaches its end in one frame and is let go in the next
       return !has(frame, Kind::button) && !has(frame, Kind::wheel) && (event.down || !has(frame, Kind::cursor));
     case Kind::wheel:
       return !has(frame, Kind::button);
@@ -36,10 +36,10 @@ void InputQueue::add(InputEvent event) {
   if (event.kind == Kind::cursor) cursor_ = event.place;
   if (event.kind == Kind::button && event.down) {
     const InputEvent here{.place = cursor_, .code = event.code, .after = event.after, .before = event.before};
-    // However slow the frames are: it is a double click unless more time must have passed.
+    // In slow frames the time of a click is known only roughly. Only clicks that were surely too far apart are single.
     event.doubleClick = firstClick_ && firstClick_->code == event.code &&
                         event.after - firstClick_->before < kDoubleClickSeconds &&
-                        glm::distance(cursor_, firstClick_->place) < kDoubleClickPlace;
+                        glm::distance(cursor_, firstClick_->place) < kDoubleClickDistance;
     firstClick_ = event.doubleClick ? std::nullopt : std::optional(here);
   }
   waiting_.push_back(event);

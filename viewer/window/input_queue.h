@@ -7,38 +7,38 @@
 
 namespace strata {
 
-/// One thing a hand did, as the window system told it. Codes are the window system's own.
+/// One thing that the user did with mouse or keyboard. Codes are the window system's own.
 struct InputEvent {
   enum class Kind { cursor, button, wheel, key, letter };
   Kind kind = Kind::cursor;
-  glm::dvec2 place{0.0};     ///< of the cursor, window units; of a wheel: its notches
+  glm::dvec2 place{0.0};     ///< of the cursor, window units; the notches of a wheel
   int code = 0;              ///< button, key or letter
   int scancode = 0;          ///< of a key
-  bool down = false;         ///< of a button or a key: goes down
-  bool repeated = false;     ///< a key that is held down says so again
+  bool down = false;         ///< the button or the key goes down, not up
+  bool repeated = false;     ///< the key went down before and is held
   int modifiers = 0;         ///< of a key
-  double after = 0.0;        ///< seconds: the window system had been asked then and did not know of it,
-  double before = 0.0;       ///< and then it did
-  bool doubleClick = false;  ///< of a button going down; InputQueue says so
+  double after = 0.0;        ///< seconds: the last time at which the window system did not know of the event
+  double before = 0.0;       ///< seconds: the first time at which it did
+  bool doubleClick = false;  ///< the button goes down for a double click; InputQueue sets it
 };
 
-/// What a hand does within one frame, spread over as many frames as it takes for each to see one thing: a button that
-/// goes down and up within a slow frame does so in two, and the cursor stays where it was pressed until then. All that
-/// a frame can see at once comes at once.
+/// Spreads events over frames, so that no frame misses one. A frame knows only whether a button is down and where the
+/// cursor is; when a button goes down and up during one slow frame, the queue therefore shows it down in one frame and
+/// up in the next, with the cursor where it was at each of the two. Events that do not hide each other come together.
 class InputQueue {
  public:
   static constexpr double kDoubleClickSeconds = 0.3;
-  static constexpr double kDoubleClickPlace = 6.0;  ///< window units between the two clicks
+  static constexpr double kDoubleClickDistance = 6.0;  ///< window units between the two clicks, at most
 
   void add(InputEvent event);
-  /// The events of the next frame, in their order.
+  /// Removes the events of the next frame and returns them in their order. Not empty unless the queue is.
   std::vector<InputEvent> takeFrame();
   bool empty() const { return waiting_.empty(); }
 
  private:
   std::deque<InputEvent> waiting_;
-  glm::dvec2 cursor_{0.0};                ///< after the last event added
-  std::optional<InputEvent> firstClick_;  ///< that a second may follow; place is the cursor's
+  glm::dvec2 cursor_{0.0};                ///< after the newest event
+  std::optional<InputEvent> firstClick_;  ///< a click that another may make a double click; its place is the cursor's
 };
 
 }  // namespace strata

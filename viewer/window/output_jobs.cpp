@@ -8,8 +8,8 @@
 namespace strata {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{30};  // for detail, between two frames of the progress
-constexpr double kLongestFlight = 1e5;              // seconds: a mistyped time does not play for ever
+constexpr std::chrono::milliseconds kPatience{30};  // how long a frame of the progress waits for detail
+constexpr double kLongestFlight = 1e5;              // seconds, so that a mistyped time does not play for ever
 
 std::string quoted(const std::string& text) {
   std::string quoted = "'";
@@ -21,7 +21,28 @@ std::string sizeText(int width, int height) { return std::to_string(width) + " x
 
 }  // namespace
 
-std::optional<View> OutputJobs::draw(const View& view, const OutputSource& source) {
+OutputJobs::OutputJobs(const std::string& name, Messages& messages) : messages_(messages) {
+  state_.pathFile = name + ".path.json";
+  state_.filmFile = name + ".mp4";
+  state_.pictureFile = name + ".png";
+}
+
+void OutputJobs::use(const WindowInput& input, CameraControl& camera, const OutputSource& source) {
+  if (input.has(Command::toggleOutputPanel)) state_.open = !state_.open;
+  if (input.has(Command::takePicture)) startPicture(camera.view(), source);
+  if (input.has(Command::addPathKey)) {
+    state_.path.addKey(camera.view());
+    messages_.notice = "key " + std::to_string(state_.path.keys().size()) + " of the camera path is set";
+  }
+  if (input.has(Command::toggleRecording)) toggleRecording(camera.view());
+  if (input.has(Command::togglePlaying)) togglePlaying();
+  const bool movedByUser = input.mouse.dragging || input.mouse.wheel != 0.0 || !input.fly.still() || camera.gliding();
+  if (movedByUser) state_.playing = false;
+  if (const auto view = play(camera.view(), input.seconds)) camera.setView(*view);
+  state_.path.record(camera.view(), input.seconds);
+}
+
+std::optional<View> OutputJobs::drawPanel(const View& view, const OutputSource& source) {
   const OutputRequest request = drawOutputPanel(state_, view);
   if (request.savePath) savePath(view, source);
   if (request.openPath) openPath();
@@ -34,14 +55,14 @@ std::optional<View> OutputJobs::draw(const View& view, const OutputSource& sourc
 
 template <class Start>
 void OutputJobs::start(const std::string& what, Start start) {
-  stopPlaying();
+  state_.playing = false;
   state_.path.endRecording();
   what_ = what;
   began_ = std::chrono::steady_clock::now();
   try {
     start();
   } catch (const Error& error) {
-    error_ = error.what();
+    messages_.error = error.what();
   }
 }
 
@@ -64,32 +85,29 @@ void OutputJobs::startFilm(const View& view, const OutputSource& source) {
 
 void OutputJobs::goOn(const OutputSource& source, bool cancel) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
-  bool done = false;
+  bool done = false, failed = false;
   double share = 0.0;
   try {
     if (auto* picture = std::get_if<std::unique_ptr<PictureTaker>>(&work_)) {
       done = (*picture)->goOn(kPatience);
       share = (*picture)->progress();
       if (done && (*picture)->unfinishedParts() > 0)
-        error_ = state_.pictureFile + ": " + std::to_string((*picture)->unfinishedParts()) +
-                 " parts of it lack detail that could not be had";
+        messages_.error = state_.pictureFile + ": " + std::to_string((*picture)->unfinishedParts()) +
+                          " parts of it lack detail that could not be loaded";
     } else if (auto* film = std::get_if<std::unique_ptr<FilmTaker>>(&work_)) {
       done = (*film)->goOn(kPatience);
       share = (*film)->progress();
     }
   } catch (const Error& error) {
-    error_ = error.what();
-    cancel = true;
+    messages_.error = error.what();
+    failed = true;
   }
   cancel = drawWorkProgress(what_, share, seconds) || cancel;
   if (done)
-    notice_ = "saved " + what_;
-  else if (cancel && error_.empty())
-    notice_ = "given up: " + what_;
-  if (done || cancel) endWork(source);
-}
-
-void OutputJobs::endWork(const OutputSource& source) {
+    messages_.notice = "saved " + what_;
+  else if (cancel && !failed)
+    messages_.notice = "given up: " + what_;
+  if (!done && !cancel && !failed) return;
   work_ = std::monostate{};
   source.layers.setSelection(source.selection);
 }
@@ -114,11 +132,11 @@ void OutputJobs::setPath(const CameraPath& path) {
 void OutputJobs::toggleRecording(const View& view) {
   if (state_.path.recording()) {
     state_.path.endRecording();
-    notice_ = "the path has " + std::to_string(state_.path.keys().size()) + " keys";
+    messages_.notice = "the path has " + std::to_string(state_.path.keys().size()) + " keys";
   } else {
-    stopPlaying();
+    state_.playing = false;
     state_.path.beginRecording(view);
-    notice_ = "recording the camera, R ends it";
+    messages_.notice = "recording the camera, R ends it";
   }
 }
 
@@ -140,20 +158,21 @@ std::optional<View> OutputJobs::play(const View& view, double seconds) {
 
 void OutputJobs::savePath(const View& view, const OutputSource& source) {
   if (state_.path.keys().empty()) {
-    error_ = "there is no path yet: K sets a key, R records";
+    messages_.error = "there is no path yet: K sets a key, R records";
     return;
   }
   if (state_.path.keys().back().t > kLongestFlight) {
-    error_ = state_.pathFile + ": the path is too long, found " + std::to_string(state_.path.keys().back().t) + " s";
+    messages_.error =
+        state_.pathFile + ": the path is too long, found " + std::to_string(state_.path.keys().back().t) + " s";
     return;
   }
   try {
     writeText(state_.pathFile, cameraPathJson(pathOf(view)));
-    notice_ = "saved " + state_.pathFile;
+    messages_.notice = "saved " + state_.pathFile;
     state_.benchCommand = "strata-bench " + quoted(source.firstStore) + " --path " + quoted(state_.pathFile) + " -o " +
                           quoted(state_.pathFile + ".bench");
   } catch (const Error& error) {
-    error_ = error.what();
+    messages_.error = error.what();
   }
 }
 
@@ -161,9 +180,9 @@ void OutputJobs::openPath() {
   try {
     const CameraPath path = readCameraPath(state_.pathFile);
     setPath(path);
-    notice_ = "opened " + state_.pathFile + ", " + std::to_string(path.keys.size()) + " keys";
+    messages_.notice = "opened " + state_.pathFile + ", " + std::to_string(path.keys.size()) + " keys";
   } catch (const Error& error) {
-    error_ = error.what();
+    messages_.error = error.what();
   }
 }
 

@@ -4,24 +4,18 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 #include "core/readable.h"
 #include "viewer/output/picture_taker.h"
 #include "viewer/window/item_positions.h"
+#include "viewer/window/widgets.h"
 
 namespace strata {
 namespace {
 
-constexpr float kWidth = 24.0f;    // of the window, in heights of a line of text
-constexpr double kTellTime = 2.0;  // seconds before the rest is foretold
+constexpr float kWidth = 24.0f;    // of the panel, in letter heights
+constexpr double kTellTime = 2.0;  // seconds before the panel says how long it will take
 constexpr int kLargestFilmSide = 7680;
-
-void inputText(const char* name, std::string& text) {
-  char buffer[512];
-  std::snprintf(buffer, sizeof buffer, "%s", text.c_str());
-  if (ImGui::InputText(name, buffer, sizeof buffer)) text = buffer;
-}
 
 void inputSize(const char* name, int& width, int& height, int largest) {
   const float each = 0.5f * (ImGui::CalcItemWidth() - ImGui::GetStyle().ItemInnerSpacing.x);
@@ -118,16 +112,10 @@ void drawPathSection(OutputState& state, const View& view, OutputRequest& reques
 void drawFilmSection(OutputState& state, OutputRequest& request) {
   inputSize("film size", state.filmWidth, state.filmHeight, kLargestFilmSide);
   float fps = static_cast<float>(state.fps);
-  if (ImGui::DragFloat("frames a second", &fps, 0.1f, 1.0f, 240.0f, "%.0f")) state.fps = static_cast<double>(fps);
+  if (ImGui::DragFloat("frames per second", &fps, 0.1f, 1.0f, 240.0f, "%.0f")) state.fps = static_cast<double>(fps);
   inputText("film", state.filmFile);
   request.takeFilm = ImGui::Button("make the film");
   noteItem("make the film");
-}
-
-bool drawFilmHeader() {
-  const bool open = ImGui::CollapsingHeader("Film of the path");
-  noteItem("Film of the path");
-  return open;
 }
 
 }  // namespace
@@ -140,9 +128,9 @@ OutputRequest drawOutputPanel(OutputState& state, const View& view) {
   if (ImGui::Begin("Pictures and paths", &state.open,
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize)) {
     ImGui::PushItemWidth(0.6f * kWidth * ImGui::GetFontSize());
-    if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) drawPictureSection(state, view, request);
-    if (ImGui::CollapsingHeader("Camera path", ImGuiTreeNodeFlags_DefaultOpen)) drawPathSection(state, view, request);
-    if (!state.path.keys().empty() && drawFilmHeader()) drawFilmSection(state, request);
+    if (sectionHeader("Picture", true)) drawPictureSection(state, view, request);
+    if (sectionHeader("Camera path", true)) drawPathSection(state, view, request);
+    if (!state.path.keys().empty() && sectionHeader("Film of the path", false)) drawFilmSection(state, request);
     ImGui::PopItemWidth();
   }
   ImGui::End();

@@ -7,6 +7,7 @@
 namespace strata {
 namespace {
 
+constexpr std::uint32_t kShade = 0xaa000000u;
 constexpr float kTextGap = 12.0f;  // pixels between a text and its place
 constexpr float kRim = 2.0f;
 constexpr float kOrdinaryLetters = 13.0f;  // pixels high
@@ -28,14 +29,14 @@ void overlayLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std
 }
 
 void overlayRimmedLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour) {
-  overlayLine(view, a, b, kOverlayShade, 2.0f + kRim);
+  overlayLine(view, a, b, kShade, 2.0f + kRim);
   overlayLine(view, a, b, colour, 2.0f);
 }
 
 void overlayDot(const View& view, const glm::dvec3& place, std::uint32_t colour, float radiusPx) {
   if (!isBefore(view, place)) return;
   ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  canvas->AddCircleFilled(at(pixelOf(view, place)), (radiusPx + 1.5f) * uiScale(), kOverlayShade);
+  canvas->AddCircleFilled(at(pixelOf(view, place)), (radiusPx + 1.5f) * uiScale(), kShade);
   canvas->AddCircleFilled(at(pixelOf(view, place)), radiusPx * uiScale(), colour);
 }
 
@@ -53,7 +54,7 @@ void overlayText(const View& view, const glm::dvec3& place, const std::string& t
   corner.x -= 0.5f * size.x;
   corner.y -= size.y + kTextGap;
   canvas->AddRectFilled({corner.x - 4.0f, corner.y - 2.0f}, {corner.x + size.x + 4.0f, corner.y + size.y + 2.0f},
-                        kOverlayShade, 3.0f);
+                        kShade, 3.0f);
   canvas->AddText(corner, colour, text.c_str());
 }
 

@@ -8,21 +8,19 @@
 
 namespace strata {
 
-// Lines, dots and texts over the picture and below the panels, at places of the scan; between Window::beginFrame() and
-// finishFrame(). Colours are R | G<<8 | B<<16 | A<<24. What lies behind the eye is not drawn. Widths and radii are
-// pixels on an ordinary screen.
+// Lines, dots and texts at places of the scan, over the picture and below the panels; between Window::beginFrame() and
+// finishFrame(). Places are world coordinates, colours R | G<<8 | B<<16 | A<<24, widths and radii pixels of an ordinary
+// screen. Whatever lies behind the eye is left out.
 
-/// How much larger letters are than on an ordinary screen; sizes of panels go with it.
+/// How much larger letters are than on an ordinary screen. Sizes of panels are multiplied by it.
 float uiScale();
 
-inline constexpr std::uint32_t kOverlayShade = 0xaa000000u;
-
 void overlayLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour, float widthPx);
-/// The same with a dark rim.
+/// The same line with a dark rim.
 void overlayRimmedLine(const View& view, const glm::dvec3& a, const glm::dvec3& b, std::uint32_t colour);
 void overlayDot(const View& view, const glm::dvec3& place, std::uint32_t colour, float radiusPx);
 void overlayRing(const View& view, const glm::dvec3& place, std::uint32_t colour, float radiusPx);
-/// Above the place, on a dark ground; nothing where the text is empty.
+/// A text above the place, on a dark ground. Draws nothing where it is empty.
 void overlayText(const View& view, const glm::dvec3& place, const std::string& text, std::uint32_t colour);
 
 }  // namespace strata

@@ -16,9 +16,9 @@ namespace strata {
 namespace {
 
 constexpr float kLeastPicture = 40.0f;  // pixels
-constexpr float kTickGap = 70.0f;       // pixels between marks of the scales, at least, times uiScale()
+constexpr float kTickGap = 70.0f;       // pixels between marks of the scales, at least
 constexpr double kZoomPerNotch = 0.85;
-constexpr int kReach = 6;  // pixels beside a point that still mean it
+constexpr int kReach = 6;  // pixels: a cursor this near to a point means it
 constexpr float kFewestPoints = 1e4f, kMostPoints = 2e7f;
 constexpr ImU32 kGridLine = IM_COL32(255, 255, 255, 28);
 constexpr ImU32 kGridText = IM_COL32(255, 255, 255, 150);
@@ -156,7 +156,7 @@ void ProfilePanel::drawPicture(const DrawOptions& options, Outcome& outcome) {
   drawScales({corner.x, corner.y});
   const auto id = ImGui::IsItemHovered() ? profilePointAt(picture_, cursor, kReach) : std::nullopt;
   if (!id) {
-    ImGui::TextDisabled("point at a point to read it; wheel zooms, drag moves");
+    ImGui::TextDisabled("move the cursor to a point to read it; the wheel zooms, a drag moves");
     return;
   }
   const ProfilePoint& point = profile_.points[*id];

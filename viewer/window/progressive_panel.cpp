@@ -7,6 +7,7 @@
 
 #include "core/readable.h"
 #include "viewer/window/overlay.h"
+#include "viewer/window/widgets.h"
 
 namespace strata {
 namespace {
@@ -15,11 +16,7 @@ float panelWidth() { return 300.0f * uiScale(); }
 
 constexpr float kLeastPoints = 1e4f, kMostPoints = 1e8f;
 
-void line(const char* name, const std::string& value) {
-  ImGui::TextUnformatted(name);
-  ImGui::SameLine(0.5f * panelWidth());
-  ImGui::TextUnformatted(value.c_str());
-}
+void line(const char* name, const std::string& value) { namedValue(name, value, 0.5f * panelWidth()); }
 
 std::string count(std::uint64_t value) { return readableCount(static_cast<double>(value)); }
 
@@ -44,7 +41,7 @@ bool drawProgressivePanel(ProgressiveRasterizer& rasterizer) {
   ImGui::SetNextWindowBgAlpha(0.82f);
   if (ImGui::Begin("Progressive", nullptr, ImGuiWindowFlags_NoFocusOnAppearing)) {
     ImGui::PushItemWidth(0.55f * panelWidth());
-    changed = pointsSlider("a frame", options.pointsPerFrame);
+    changed = pointsSlider("per frame", options.pointsPerFrame);
     changed = pointsSlider("uploaded", options.uploadPerFrame) || changed;
     ImGui::PopItemWidth();
     ImGui::Separator();

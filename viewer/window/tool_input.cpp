@@ -5,9 +5,9 @@
 namespace strata {
 namespace {
 
-constexpr int kClickReach = 6;  // pixels beside a point that still mean it
+constexpr int kClickReach = 6;  // pixels: a click this near to a point means it
 
-/// The world point that is seen below the cursor, or within a click's reach of it.
+/// The world point under the cursor; where there is none, the nearest that a click would reach.
 std::optional<glm::dvec3> pointUnder(const View& view, const Picture& picture, const glm::dvec2& cursor) {
   const auto pixel = drawnPixelAt(picture, cursor, kClickReach);
   if (!pixel) return std::nullopt;
@@ -19,17 +19,18 @@ std::optional<glm::dvec3> pointUnder(const View& view, const Picture& picture, c
 
 void moveByHand(CameraControl& control, ClipTool& clip, const WindowInput& input, const Picture& picture) {
   const auto under = [&] { return pointUnder(control.view(), picture, input.cursor); };
-  if (input.leftPressed && clip.press(control.view(), input.cursor))
+  const MouseInput& mouse = input.mouse;
+  if (mouse.leftPressed && clip.press(control.view(), input.cursor))
     control.release();
-  else if (input.leftPressed)
+  else if (mouse.leftPressed)
     control.pressLeft(input.cursor, under());
-  if (input.rightPressed) control.pressRight(input.cursor, under());
-  if (input.dragging && clip.held())
+  if (mouse.rightPressed) control.pressRight(input.cursor, under());
+  if (mouse.dragging && clip.held())
     clip.move(control.view(), input.cursor);
-  else if (input.dragging)
+  else if (mouse.dragging)
     control.move(input.cursor);
-  if (!input.dragging) control.release();
-  if (input.wheel != 0.0) control.wheel(input.wheel, input.cursor, under());
+  if (!mouse.dragging) control.release();
+  if (mouse.wheel != 0.0) control.wheel(mouse.wheel, input.cursor, under());
   if (!input.fly.still()) control.fly(input.fly, input.seconds);
 }
 
@@ -40,25 +41,25 @@ void steer(CameraControl& control, ToolsState& tools, const WindowInput& input, 
   control.advance(input.seconds);
   moveByHand(control, tools.clip, input, seen.picture);
   const View& view = control.view();
-  if (input.frameAll) control.glideTo(framed(view, seen.bounds));
-  if (input.front) control.glideTo(standardView(view, seen.bounds, StandardView::front));
-  if (input.side) control.glideTo(standardView(view, seen.bounds, StandardView::side));
-  if (input.top) control.glideTo(standardView(view, seen.bounds, StandardView::top));
-  if (input.nextMode) control.setMode(nextMode(control.mode()));
-  if (input.orthographic) control.setView(withOrthographic(view, !view.orthographic));
-  if (input.doubleClicked && !tools.measure.active())
+  if (input.has(Command::showAll)) control.glideTo(framed(view, seen.bounds));
+  if (input.has(Command::viewFront)) control.glideTo(standardView(view, seen.bounds, StandardView::front));
+  if (input.has(Command::viewSide)) control.glideTo(standardView(view, seen.bounds, StandardView::side));
+  if (input.has(Command::viewTop)) control.glideTo(standardView(view, seen.bounds, StandardView::top));
+  if (input.has(Command::nextMoveMode)) control.setMode(nextMode(control.mode()));
+  if (input.has(Command::togglePerspective)) control.setView(withOrthographic(view, !view.orthographic));
+  if (input.mouse.doubleClicked && !tools.measure.active())
     if (const auto point = pointUnder(view, seen.picture, input.cursor)) control.glideTo(approached(view, *point));
 }
 
 std::string ToolInput::use(ToolsState& tools, const WindowInput& input, const View& view, const ScreenContent& seen) {
-  if (input.measure) tools.measure.begin(MeasureKind::distance);
-  if (input.profile) tools.measure.begin(MeasureKind::profile);
-  if (input.clipBox) tools.clip.add(boxInView(view, seen.bounds));
-  if (input.takeBack) tools.measure.undo();
-  if (input.drop) tools.measure.cancel();
+  if (input.has(Command::measureDistance)) tools.measure.begin(MeasureKind::distance);
+  if (input.has(Command::measureProfile)) tools.measure.begin(MeasureKind::profile);
+  if (input.has(Command::addClipBox)) tools.clip.add(boxInView(view, seen.bounds));
+  if (input.has(Command::takeBack)) tools.measure.undo();
+  if (input.has(Command::cancel)) tools.measure.cancel();
   const bool onHandle = tools.clip.held().has_value();
-  if (!input.dragging) tools.clip.release();
-  if (input.clicked && !onHandle && seen.list != nullptr) {
+  if (!input.mouse.dragging) tools.clip.release();
+  if (input.mouse.clicked && !onHandle && seen.list != nullptr) {
     if (const auto point = drawnPointAt(*seen.list, seen.picture, input.cursor, kClickReach)) {
       const NodeData& node = *seen.list->items[point->item].node;
       lookup_.ask(seen.layers.stores()[seen.layers.indexOfItem(point->item)], node.key, point->point,
@@ -73,7 +74,8 @@ std::string ToolInput::use(ToolsState& tools, const WindowInput& input, const Vi
       tools.measure.add(answer->point.position);
     }
   }
-  if (input.keep || (input.doubleClicked && tools.measure.active() && isOpenEnded(tools.measure.current()->kind)))
+  if (input.has(Command::finish) ||
+      (input.mouse.doubleClicked && tools.measure.active() && isOpenEnded(tools.measure.current()->kind)))
     endMeasuring_ = true;
   if (endMeasuring_ && !lookup_.pending()) {
     tools.measure.finish();

@@ -4,10 +4,11 @@
 
 #include "core/program.h"
 #include "viewer/window/viewer_app.h"
+#include "viewer/window/viewer_options.h"
 
 int main(int argc, char** argv) {
-  // Nodes come and go in several threads for hours: their blocks go back to the system instead of leaving holes in
-  // heaps.
+  // Several threads allocate and free nodes for hours. Blocks of a node's size go back to the system at once instead of
+  // leaving holes in the heaps, of which there are no more than two.
   ::mallopt(M_MMAP_THRESHOLD, 1 << 18);
   ::mallopt(M_ARENA_MAX, 2);
   try {

@@ -1,13 +1,12 @@
-#include "viewer/window/measure_panel.h"
+#include "viewer/window/tools_panel.h"
 
 #include <imgui.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "viewer/window/filter_panel.h"
-#include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
+#include "viewer/window/widgets.h"
 
 namespace strata {
 namespace {
@@ -35,20 +34,19 @@ void drawPicked(const ToolsState& state) {
   for (const auto& [name, value] : state.picked->facts) {
     ImGui::TextDisabled("%s", name.c_str());
     ImGui::SameLine(0.46f * panelWidth());
-    const bool isPath = value.starts_with('/');  // its end says what it is, all of it does not fit
+    const bool isPath = value.starts_with('/');  // too long for the panel: its last name is shown, the tooltip has all
     ImGui::TextWrapped("%s", isPath ? value.substr(value.rfind('/') + 1).c_str() : value.c_str());
     if (isPath && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", value.c_str());
   }
 }
 
-/// Two lines of the list of measurements. True when it is to be deleted.
+/// Draws one measurement of the list, which takes two lines. True when it is to be deleted; `show` turns true when the
+/// window of a profile is to open.
 bool drawMeasurementLine(Measurement& m, bool& show) {
   ImGui::Checkbox("##visible", &m.visible);
   ImGui::SameLine();
-  char name[64];
-  std::snprintf(name, sizeof name, "%s", m.name.c_str());
   ImGui::SetNextItemWidth(0.42f * panelWidth());
-  if (ImGui::InputText("##name", name, sizeof name)) m.name = name;
+  inputText("##name", m.name);
   ImGui::SameLine();
   if (m.kind == MeasureKind::profile) {
     show = ImGui::SmallButton("show");
@@ -108,10 +106,8 @@ void drawBookmarks(ToolsState& state, ToolsRequest& request) {
     ImGui::PushID(static_cast<int>(1000 + i));
     if (ImGui::SmallButton("go")) request.goTo = state.bookmarks[i].view;
     ImGui::SameLine();
-    char name[64];
-    std::snprintf(name, sizeof name, "%s", state.bookmarks[i].name.c_str());
     ImGui::SetNextItemWidth(0.6f * panelWidth());
-    if (ImGui::InputText("##name", name, sizeof name)) state.bookmarks[i].name = name;
+    inputText("##name", state.bookmarks[i].name);
     ImGui::SameLine(panelWidth() - 34.0f * uiScale());
     const bool dropped = ImGui::SmallButton("x");
     ImGui::PopID();
@@ -122,7 +118,7 @@ void drawBookmarks(ToolsState& state, ToolsRequest& request) {
   }
 }
 
-/// The outline of a profile's slab, segment by segment, at the heights of its points.
+/// Draws the outline of a profile's slab, segment by segment, at the heights of its points.
 void drawSlab(const Measurement& m, const View& view, std::uint32_t colour) {
   for (std::size_t i = 0; i + 1 < m.points.size(); ++i) {
     const glm::dvec3 &a = m.points[i], &b = m.points[i + 1];
@@ -148,13 +144,6 @@ void drawOne(const Measurement& m, const View& view, std::uint32_t colour) {
   for (const glm::dvec3& p : m.points) overlayDot(view, p, colour, 3.5f);
 }
 
-/// True where the section is open.
-bool drawHeader(const char* name, bool openAtFirst) {
-  const bool open = ImGui::CollapsingHeader(name, openAtFirst ? ImGuiTreeNodeFlags_DefaultOpen : 0);
-  noteItem(name);
-  return open;
-}
-
 }  // namespace
 
 ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& bounds) {
@@ -167,7 +156,7 @@ ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& boun
                                       ImVec2(outer, ImGui::GetIO().DisplaySize.y - 2.0f * kMargin));
   ImGui::SetNextWindowBgAlpha(0.82f);
   if (ImGui::Begin("Tools", nullptr, ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize)) {
-    if (state.layers.size() > 1 && drawHeader("Layers", true))
+    if (state.layers.size() > 1 && sectionHeader("Layers", true))
       for (std::size_t i = 0; i < state.layers.size(); ++i) {
         bool shown = state.shown[i];
         if (ImGui::Checkbox(state.layers[i].c_str(), &shown)) {
@@ -175,13 +164,13 @@ ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& boun
           request.layersChanged = true;
         }
       }
-    if (drawHeader("Point", true)) drawPicked(state);
-    if (drawHeader("Measure", true)) drawMeasure(state, request);
-    if (drawHeader("Clip", false))
+    if (sectionHeader("Point", true)) drawPicked(state);
+    if (sectionHeader("Measure", true)) drawMeasure(state, request);
+    if (sectionHeader("Clip", false))
       request.pictureChanged = drawClipSection(state.clip, view, bounds) || request.pictureChanged;
-    if (drawHeader("Classes", false))
+    if (sectionHeader("Classes", false))
       request.pictureChanged = drawClassSection(state.census.present(), state.classes) || request.pictureChanged;
-    if (drawHeader("Keep", true)) drawBookmarks(state, request);
+    if (sectionHeader("Keep", true)) drawBookmarks(state, request);
   }
   ImGui::End();
   return request;

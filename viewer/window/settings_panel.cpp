@@ -1,4 +1,4 @@
-#include "viewer/window/panel.h"
+#include "viewer/window/settings_panel.h"
 
 #include <imgui.h>
 
@@ -16,6 +16,7 @@
 #include "viewer/session/legend.h"
 #include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"
+#include "viewer/window/widgets.h"
 
 namespace strata {
 namespace {
@@ -28,7 +29,7 @@ constexpr float kMostBudget = 1e8f;
 constexpr float kPlotHeight = 26.0f;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Two sliders from `least` to `most` and a button that brings `automatic` back.
+/// Draws two sliders, which go from one end of `limits` to the other, and a button that brings `automatic` back.
 template <typename Range>
 bool drawRange(Range& range, const Range& limits, const Range& automatic, const char* format, ImGuiSliderFlags flags) {
   float low = static_cast<float>(range.x), high = static_cast<float>(range.y);
@@ -75,7 +76,7 @@ void drawLegend(const Legend& legend) {
   }
 }
 
-/// Why the item drawn last is grey.
+/// Gives the item drawn last a tooltip that says why it is disabled, where it is.
 void explain(bool disabled, const char* why) {
   if (disabled && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", why);
 }
@@ -139,7 +140,7 @@ bool drawSettings(ViewerSettings& settings, const ColourLimits& limits, bool pro
     changed = true;
   }
   float density = static_cast<float>(settings.selection.pointsPerPixel);
-  if (ImGui::SliderFloat("detail", &density, 0.05f, 8.0f, "%.2f points a pixel", ImGuiSliderFlags_Logarithmic)) {
+  if (ImGui::SliderFloat("detail", &density, 0.05f, 8.0f, "%.2f points per pixel", ImGuiSliderFlags_Logarithmic)) {
     settings.selection.pointsPerPixel = static_cast<double>(density);
     changed = true;
   }
@@ -178,15 +179,11 @@ bool drawSettings(ViewerSettings& settings, const ColourLimits& limits, bool pro
   return changed;
 }
 
-void line(const char* name, const std::string& value) {
-  ImGui::TextUnformatted(name);
-  ImGui::SameLine(0.5f * panelWidth());
-  ImGui::TextUnformatted(value.c_str());
-}
+float valueColumn() { return 0.5f * panelWidth(); }
 
 void plot(const char* name, const FrameHistory& history, FrameHistory::Series which, const std::string& value) {
   const std::span<const float> series = history.series(which);
-  line(name, value);
+  namedValue(name, value, valueColumn());
   ImGui::PushID(name);
   ImGui::PlotLines("##plot", series.data(), static_cast<int>(series.size()), 0, nullptr, 0.0f,
                    static_cast<float>(std::max(1.05 * history.largest(which), 1e-3)),
@@ -194,142 +191,60 @@ void plot(const char* name, const FrameHistory& history, FrameHistory::Series wh
   ImGui::PopID();
 }
 
-void drawStats(const ViewerStats& stats) {
+void drawSpeed(const SettingsPanelFacts& facts) {
   using Series = FrameHistory::Series;
-  const FrameHistory& history = stats.history;
+  const FrameReport& frame = facts.frame;
+  const FrameHistory& history = frame.history;
   plot("frame", history, Series::frameMs,
-       readableMs(stats.frameMs) + ", at most " + readableMs(history.largest(Series::frameMs)));
+       readableMs(frame.frameMs) + ", at most " + readableMs(history.largest(Series::frameMs)));
   plot("points drawn", history, Series::pointsDrawn,
-       readableCount(static_cast<double>(stats.draw.pointsDrawn)) + " of " +
-           readableCount(static_cast<double>(stats.pointsInStores)));
+       readableCount(static_cast<double>(frame.draw.pointsDrawn)) + " of " +
+           readableCount(static_cast<double>(facts.pointsInStores)));
   plot("nodes missing", history, Series::missingNodes,
-       std::to_string(stats.missingNodes) + " of " + std::to_string(stats.nodesDrawn + stats.missingNodes) +
-           (stats.complete ? "" : ", loading"));
-  plot("queue", history, Series::queue, std::to_string(stats.streamer.queueLength));
+       std::to_string(frame.missingNodes) + " of " + std::to_string(frame.nodesDrawn + frame.missingNodes) +
+           (frame.complete ? "" : ", loading"));
+  plot("queue", history, Series::queue, std::to_string(frame.streamer.queueLength));
   plot("from the disk", history, Series::readBytesPerSecond,
        readableBytes(history.latest(Series::readBytesPerSecond)) + "/s");
-  line("read", readableBytes(static_cast<double>(stats.streamer.bytesRead)));
-  line("in memory", readableCount(stats.streamer.residentNodes) + " nodes, " +
-                        readableBytes(static_cast<double>(stats.streamer.residentBytes)));
+  const auto line = [](const char* name, const std::string& value) { namedValue(name, value, valueColumn()); };
+  line("read", readableBytes(static_cast<double>(frame.streamer.bytesRead)));
+  line("in memory", readableCount(frame.streamer.residentNodes) + " nodes, " +
+                        readableBytes(static_cast<double>(frame.streamer.residentBytes)));
   char share[16];
   std::snprintf(share, sizeof share, "%.1f %%", 100.0 * history.latest(Series::hitRate));
   line("found there", share);
-  line("moving (G)", modeName(stats.mode));
-  if (stats.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(stats.draw.gpuBytes)));
-  line("LOD pass", readableMs(stats.streamer.lodMs));
-  line("fly speed", readableCount(stats.flySpeed) + " m/s");
-  if (stats.streamer.failures > 0)
+  line("moving (G)", modeName(facts.mode));
+  if (frame.draw.gpuBytes > 0) line("on the GPU", readableBytes(static_cast<double>(frame.draw.gpuBytes)));
+  line("LOD pass", readableMs(frame.streamer.lodMs));
+  line("fly speed", readableCount(facts.flySpeed) + " m/s");
+  if (frame.streamer.failures > 0)
     ImGui::TextColored(ImVec4(1.0f, 0.5f, 0.4f, 1.0f), "%llu reads failed, %llu nodes given up",
-                       static_cast<unsigned long long>(stats.streamer.failures),
-                       static_cast<unsigned long long>(stats.streamer.nodesGivenUp));
+                       static_cast<unsigned long long>(frame.streamer.failures),
+                       static_cast<unsigned long long>(frame.streamer.nodesGivenUp));
 }
 
 }  // namespace
 
-void drawHelp(bool& open) {
-  if (!open) return;
-  constexpr const char* kKeys[][2] = {{"left drag", "orbit around the point under the cursor"},
-                                      {"right drag", "pan; the point stays under the cursor"},
-                                      {"wheel", "nearer to the point under the cursor, away"},
-                                      {"click", "coordinates and attributes of the point; a measurement's next point"},
-                                      {"double click", "go to the point"},
-                                      {"G", "the next way of moving: orbit, fly, earth"},
-                                      {"    fly", "left drag turns the head, the wheel sets the speed"},
-                                      {"    earth", "left drag slides over the ground, right drag orbits"},
-                                      {"W A S D, E Q", "fly; shift: five times as fast"},
-                                      {"F", "show everything"},
-                                      {"1 3 7", "from the front, the side, the top"},
-                                      {"O", "with perspective, without"},
-                                      {"M, X", "measure a distance, a cross-section"},
-                                      {"B", "new clip box; drag its dots"},
-                                      {"Enter, Backspace, Escape", "measuring: keep, take back a point, drop"},
-                                      {"P", "pictures of any size, camera paths, films"},
-                                      {"K, R, space", "camera path: set a key, record, play"},
-                                      {"Control + P", "take the picture at once"},
-                                      {"Control + S, Control + Q", "save the project (and the path), quit"},
-                                      {"H, F1", "this help"}};
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, 0.5f * size.y), ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
-  if (ImGui::Begin("Keys and mouse", &open, ImGuiWindowFlags_AlwaysAutoResize))
-    for (const auto& key : kKeys) {
-      ImGui::TextUnformatted(key[0]);
-      ImGui::SameLine(15.0f * ImGui::GetFontSize());
-      ImGui::TextUnformatted(key[1]);
-    }
-  ImGui::End();
-}
-
-void drawError(std::string& text) {
-  if (text.empty()) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos(ImVec2(0.5f * size.x, size.y - 24.0f), ImGuiCond_Always, ImVec2(0.5f, 1.0f));
-  ImGui::SetNextWindowSizeConstraints(ImVec2(280.0f * uiScale(), 0.0f), ImVec2(0.8f * size.x, size.y));
-  if (ImGui::Begin("Something went wrong", nullptr,
-                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing)) {
-    ImGui::PushTextWrapPos(0.7f * size.x);
-    ImGui::TextUnformatted(text.c_str());
-    ImGui::PopTextWrapPos();
-    if (ImGui::SmallButton("close")) text.clear();
-    noteItem("close the message");
-  }
-  ImGui::End();
-}
-
-void drawSpinner(const ViewerStats& stats) {
-  if (stats.complete) return;
-  const ImVec2 size = ImGui::GetIO().DisplaySize;
-  const float turn = static_cast<float>(4.0 * std::fmod(ImGui::GetTime(), std::numbers::pi / 2.0));
-  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  const float unit = uiScale();
-  canvas->PathArcTo(ImVec2(size.x - 28.0f * unit, size.y - 28.0f * unit), 9.0f * unit, turn, turn + 4.5f);
-  canvas->PathStroke(IM_COL32(255, 255, 255, 110), 0, 2.5f * unit);
-}
-
-namespace {
-
-/// A text on a dark ground, in the middle, `top` down from the upper edge.
-void drawPill(const std::string& text, float top, ImU32 colour) {
-  ImDrawList* canvas = ImGui::GetBackgroundDrawList();
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
-  const float left = 0.5f * (ImGui::GetIO().DisplaySize.x - size.x), rim = 6.0f * uiScale();
-  canvas->AddRectFilled({left - 1.6f * rim, top - rim}, {left + size.x + 1.6f * rim, top + size.y + rim},
-                        IM_COL32(0, 0, 0, 190), 5.0f * uiScale());
-  canvas->AddText({left, top}, colour, text.c_str());
-}
-
-}  // namespace
-
-void drawHint(const std::string& text) {
-  if (!text.empty()) drawPill(text, 16.0f * uiScale(), IM_COL32(64, 200, 255, 255));
-}
-
-void drawFlySpeed(const ViewerStats& stats) {
-  if (stats.flying)
-    drawPill(readableCount(stats.flySpeed) + " m/s", ImGui::GetIO().DisplaySize.y - 32.0f * uiScale(),
-             IM_COL32(255, 255, 255, 220));
-}
-
-bool drawPanel(ViewerSettings& settings, const ViewerStats& stats, const ColourLimits& limits,
-               const std::function<void()>& inside) {
+bool drawSettingsPanel(ViewerSettings& settings, const ColourLimits& limits, const SettingsPanelFacts& facts,
+                       InspectorPanel& inspector) {
   const float outer = panelWidth() + 12.0f;
   ImGui::SetNextWindowPos(ImVec2(12.0f, 12.0f), ImGuiCond_FirstUseEver);
   ImGui::SetNextWindowSizeConstraints(ImVec2(outer, 0.0f), ImVec2(outer, ImGui::GetIO().DisplaySize.y - 24.0f));
   ImGui::SetNextWindowBgAlpha(0.82f);
   bool changed = false;
   if (ImGui::Begin("Strata", nullptr, ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_AlwaysAutoResize)) {
-    ImGui::TextWrapped("%s", stats.layers.c_str());
-    ImGui::TextDisabled("%s", stats.rasterizer.c_str());
+    ImGui::TextWrapped("%s", facts.layers.c_str());
+    ImGui::TextDisabled("%s", facts.rasterizer.c_str());
     ImGui::PushItemWidth(0.55f * panelWidth());
-    if (ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen))
-      changed = drawSettings(settings, limits, stats.progressive);
-    if (ImGui::CollapsingHeader("Speed")) drawStats(stats);
-    if (ImGui::CollapsingHeader("Inside")) inside();
+    if (sectionHeader("Look", true)) changed = drawSettings(settings, limits, facts.progressive);
+    if (sectionHeader("Speed", false)) drawSpeed(facts);
+    if (sectionHeader("Inside", false)) inspector.drawSection(facts.frame.nodesDrawn);
     ImGui::PopItemWidth();
     ImGui::Separator();
-    ImGui::TextDisabled("%s of %s points, %s", readableCount(static_cast<double>(stats.draw.pointsDrawn)).c_str(),
-                        readableCount(static_cast<double>(stats.pointsInStores)).c_str(),
-                        readableMs(stats.frameMs).c_str());
-    if (!stats.notice.empty()) ImGui::TextWrapped("%s", stats.notice.c_str());
+    ImGui::TextDisabled("%s of %s points, %s", readableCount(static_cast<double>(facts.frame.draw.pointsDrawn)).c_str(),
+                        readableCount(static_cast<double>(facts.pointsInStores)).c_str(),
+                        readableMs(facts.frame.frameMs).c_str());
+    if (!facts.notice.empty()) ImGui::TextWrapped("%s", facts.notice.c_str());
     ImGui::TextDisabled("H shows what keys and mouse do");
   }
   ImGui::End();

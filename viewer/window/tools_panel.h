@@ -12,24 +12,24 @@
 
 namespace strata {
 
-/// What the tools' panel shows and changes.
+/// What the panel "Tools" shows and changes.
 struct ToolsState {
   MeasureTool measure;
-  std::optional<PickedPoint> picked;  ///< of the last click
-  bool lookingUp = false;
+  std::optional<PickedPoint> picked;  ///< the point clicked last
+  bool lookingUp = false;             ///< a point is being read from the disk
   ClipTool clip;
-  ClassCensus census;                                   ///< of the nodes that were drawn
-  std::bitset<256> classes = std::bitset<256>().set();  ///< those to be drawn
+  ClassCensus census;                                   ///< of the nodes drawn so far
+  std::bitset<256> classes = std::bitset<256>().set();  ///< the classes that are drawn
   std::vector<Bookmark> bookmarks;
   std::vector<std::string> layers;          ///< names of the stores
-  std::vector<bool> shown;                  ///< by store
+  std::vector<bool> shown;                  ///< by store: it is drawn
   std::string exportBase = "measurements";  ///< file name without its ending
 };
 
-/// What the user asked for in the panel, for the app to do.
+/// What the user asked for in the panel; ViewerApp does it.
 struct ToolsRequest {
   bool layersChanged = false;
-  bool pictureChanged = false;  ///< something else that it shows
+  bool pictureChanged = false;  ///< something else was changed that the picture shows
   bool exportCsv = false, exportGeoJson = false;
   bool saveProject = false;
   bool addBookmark = false;
@@ -37,11 +37,11 @@ struct ToolsRequest {
   std::optional<std::size_t> showProfile;  ///< index among the measurements
 };
 
-/// Draws the tools' panel at the right edge of the window that `view` fills; between Window::beginFrame() and
-/// finishFrame(). `bounds` are those of the scan.
+/// Draws the panel "Tools" at the right edge of the window, which `view` fills; between Window::beginFrame() and
+/// finishFrame(). `bounds` is the box of the scan.
 ToolsRequest drawToolsPanel(ToolsState& state, const View& view, const Box& bounds);
 
-/// Lines, points and figures of the measurements over the picture.
+/// Draws lines, points and results of the measurements, and a ring around the picked point, over the picture.
 void drawMeasurements(const MeasureTool& tool, const View& view, const std::optional<PickedPoint>& picked);
 
 }  // namespace strata
