@@ -10,7 +10,7 @@
 
 namespace strata {
 
-/// How the last frames went: figures for small plots. For the render thread.
+/// The figures of the newest frames, for small plots. For the render thread.
 class FrameHistory {
  public:
   using Clock = std::chrono::steady_clock;
@@ -18,7 +18,7 @@ class FrameHistory {
   enum class Series { frameMs, pointsDrawn, nodesDrawn, missingNodes, queue, cacheBytes, readBytesPerSecond, hitRate };
   static constexpr int kSeries = 8;
   static constexpr std::size_t kLength = 120;  ///< frames that are kept
-  /// Rates are over at least this long: what comes in one frame says little.
+  /// Rates are means over at least this time: a single frame says little.
   static constexpr std::chrono::milliseconds kWindow{500};
 
   struct FrameFigures {
@@ -27,13 +27,13 @@ class FrameHistory {
     std::uint64_t nodesDrawn = 0;
     std::uint64_t missingNodes = 0;
   };
-  /// Once a frame.
+  /// Takes in one frame. The rates follow from `now` and the counts of `streamer`.
   void add(Clock::time_point now, const FrameFigures& frame, const StreamerStats& streamer);
 
-  /// Oldest first, at most kLength.
+  /// The figures of at most kLength frames, oldest first.
   std::span<const float> series(Series which) const { return series_[static_cast<std::size_t>(which)]; }
+  // Of the frames that are kept; 0 where there are none.
   double latest(Series which) const;
-  /// Of the frames that are kept; 0 where there are none.
   double largest(Series which) const;
 
  private:

@@ -10,19 +10,20 @@
 
 namespace strata {
 
-/// How the engine chooses, shown over the picture: cubes and contours of the drawn nodes, the coarse depth, and the
-/// view that nodes were chosen for while it is held still. For the render thread, with the GL context current.
+/// Shows how nodes are selected: cubes and contours of the drawn nodes, the coarse depth, and the view that nodes were
+/// selected for while that is frozen. For the render thread, with the window's context current.
 class InspectorPanel {
  public:
-  static constexpr std::size_t kMostNodes = 1500;  ///< that are outlined
+  static constexpr std::size_t kMostNodes = 1500;  ///< that get an outline
 
   explicit InspectorPanel(GlContext::GetProc getProc) : texture_(getProc) {}
 
-  /// Draws the section of the panel that switches all this.
+  /// Draws the section "Inside" of the settings panel, which switches all this.
   void drawSection(std::size_t nodesDrawn);
-  /// The view that nodes are to be chosen for: `view`, or the one in which the choice was frozen.
+  /// The view that nodes are to be selected for: `view`, or the one in which the user froze the selection.
   const View& chosenFor(const View& view);
-  /// Between Window::beginFrame() and finishFrame(). `list` is the one that was drawn.
+  /// Draws the outlines and the window "Coarse depth"; between Window::beginFrame() and finishFrame(). `list` is the
+  /// list that the picture was drawn from.
   void drawOver(const Layers& layers, const RenderList& list, const View& view);
 
  private:
@@ -31,7 +32,7 @@ class InspectorPanel {
 
   bool frozen_ = false, cubes_ = false, contours_ = false, depth_ = false;
   std::optional<View> held_;
-  std::vector<std::unique_ptr<NodeFinder>> finders_;  ///< by store, made when they are first needed
+  std::vector<std::unique_ptr<NodeFinder>> finders_;  ///< by store; made when they are first needed
   std::vector<float> depths_;
   Picture depthPicture_;
   PictureTexture texture_;

@@ -6,10 +6,11 @@
 
 namespace strata {
 
-/// Middles of the items of the panels that can be seen in this frame, window units, by name.
+/// The centres of the panels' items that are visible in this frame, window units, by name. Scripts find the items by
+/// them (`--state`).
 using ItemPositions = std::map<std::string, glm::dvec2>;
 
-/// Notes where the item stands that Dear ImGui drew last.
+/// Notes the position of the item that Dear ImGui drew last, where it is visible. Needs a Window.
 void noteItem(const std::string& name);
 
 }  // namespace strata

@@ -59,7 +59,7 @@ Image PictureTexture::readBackBuffer(int width, int height) const {
               std::vector<std::uint32_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height))};
   gl_.pixelStorei(kPackAlignment, 4);
   gl_.readPixels(0, 0, width, height, kRgba, kUnsignedByte, image.pixels.data());
-  // OpenGL's first row is the lowest. A window's own alpha says nothing.
+  // OpenGL's first row is the lowest. The alpha of a back buffer means nothing.
   for (int y = 0; y < height / 2; ++y)
     std::swap_ranges(image.pixels.begin() + static_cast<std::ptrdiff_t>(y) * width,
                      image.pixels.begin() + static_cast<std::ptrdiff_t>(y + 1) * width,

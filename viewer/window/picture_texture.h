@@ -14,7 +14,7 @@ class PictureTexture {
   PictureTexture(const PictureTexture&) = delete;
   PictureTexture& operator=(const PictureTexture&) = delete;
 
-  /// Copies the picture into the texture, row 0 first.
+  /// Copies the picture into the texture.
   void upload(const Picture& picture);
   unsigned id() const { return texture_; }
   /// Copies the window's back buffer, row 0 on top.

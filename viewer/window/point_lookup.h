@@ -9,7 +9,8 @@
 
 namespace strata {
 
-/// Asks the disk about one clicked point at a time, beside the frames.
+/// Reads clicked points from their stores in a thread of its own, one after the other, so that no frame waits for the
+/// disk. All members are for the render thread.
 class PointLookup {
  public:
   struct Answer {
@@ -17,10 +18,11 @@ class PointLookup {
     std::string error;  ///< empty when all went well
   };
 
-  /// Render thread. Questions are answered one after the other.
+  /// Asks for the point number `point` of a node, which was drawn at `drawnAt`.
   void ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point, const glm::dvec3& drawnAt);
+  /// True while questions are unanswered.
   bool pending() const { return answer_.valid(); }
-  /// Render thread, once a frame: the answer, when it has come.
+  /// The next answer, once it has come; for once in each frame. Never waits.
   std::optional<Answer> take();
 
  private:
@@ -33,7 +35,7 @@ class PointLookup {
   void askNext();
 
   std::deque<Question> waiting_;
-  std::future<Answer> answer_;  ///< its destructor waits for the one read that may be on its way
+  std::future<Answer> answer_;  ///< of the question being answered; its destructor waits for the end of the read
 };
 
 }  // namespace strata

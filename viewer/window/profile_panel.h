@@ -15,30 +15,31 @@
 
 namespace strata {
 
-/// The window that shows one profile: its picture with scales, the point under the cursor, how deep it was read and
-/// why not deeper. For the render thread, with the GL context current.
+/// The window that shows one profile: its picture with scales, the point under the cursor, how deep the stores were
+/// read and why not deeper. For the render thread, with the window's context current.
 class ProfilePanel {
  public:
   explicit ProfilePanel(GlContext::GetProc getProc) : texture_(getProc) {}
 
-  /// Opens the window for a profile of the measurements.
+  /// Opens the window for `profile`, one of the measurements.
   void show(const Measurement& profile);
   bool open() const { return !line_.empty(); }
   bool reading() const { return reader_.pending(); }
 
   struct Outcome {
-    std::optional<glm::dvec3> pointed;  ///< the point under the cursor, world
-    std::string csv;                    ///< what is to be saved; empty = nothing
+    std::optional<glm::dvec3> pointed;  ///< the point under the cursor, in the world
+    std::string csv;                    ///< text that the user wants to save; empty: none
     std::string name;                   ///< of the profile
-    std::string failure;                ///< of reading, once
+    std::string failure;                ///< why reading failed, told once
   };
-  /// Between Window::beginFrame() and finishFrame(). The profile's width is changed in `kept`; the window closes when
-  /// the profile is there no longer. Reads from `stores` again when they, the width or the depth were changed.
+  /// Draws the window where it is open; between Window::beginFrame() and finishFrame(). Changes the profile's width in
+  /// `kept`, and closes the window when the profile is no longer there. Begins to read again when `stores`, the width
+  /// or the depth have changed.
   Outcome draw(std::vector<Measurement>& kept, const std::vector<std::shared_ptr<const Store>>& stores,
                const DrawOptions& options);
 
  private:
-  /// What a profile is read by.
+  /// Everything that decides which points a profile has.
   struct Question {
     double width = 0.0;
     int depth = ProfileOptions::kDeepest;
@@ -47,7 +48,7 @@ class ProfilePanel {
 
     bool operator==(const Question&) const = default;
   };
-  /// What a picture is drawn by.
+  /// Everything that decides how the picture looks.
   struct Look {
     ProfileWindow window;
     ColourMode colour{};
@@ -56,7 +57,7 @@ class ProfilePanel {
     glm::dvec2 elevation{0.0};
     glm::u8vec3 background{0};
     std::bitset<256> classes;
-    std::uint64_t serial = 0;
+    std::uint64_t serial = 0;  ///< of the profile
 
     bool operator==(const Look&) const = default;
   };
@@ -65,13 +66,13 @@ class ProfilePanel {
   void drawPicture(const DrawOptions& options, Outcome& outcome);
   void drawScales(const glm::vec2& corner) const;
 
-  std::vector<glm::dvec3> line_;  ///< of the profile that is shown; empty = closed
+  std::vector<glm::dvec3> line_;  ///< of the profile that is shown; empty: the window is closed
   Question wanted_, asked_;
   ProfileReader reader_;
   Profile profile_;
-  std::uint64_t serial_ = 0;  ///< counts profiles
+  std::uint64_t serial_ = 0;  ///< counts the profiles shown
   double stretch_ = 1.0;
-  std::optional<ProfileWindow> window_;  ///< none: all of it
+  std::optional<ProfileWindow> window_;  ///< the part that is shown; none: all of it
   Look look_;
   Picture picture_;
   PictureTexture texture_;

@@ -3,8 +3,9 @@
 
 namespace strata {
 
-/// Times of the passes, fill and importance of the pool, and the settings (Rumpler 2019, 3.6), in a window of its own
-/// at the bottom right. True when a setting was changed.
+/// Draws the window "Progressive" at the bottom right: the settings of progressive drawing, how full the pool is, and
+/// the time of each pass (Rumpler 2019, section 3.6). Between Window::beginFrame() and finishFrame(). True when a
+/// setting was changed.
 bool drawProgressivePanel(ProgressiveRasterizer& rasterizer);
 
 }  // namespace strata
