@@ -2,7 +2,7 @@
 
 namespace strata::test {
 
-// The only source that knows these paths, so that objects of the others are the same in every build folder.
+// No other source knows these paths, so that the objects of the others are the same in every build folder.
 std::filesystem::path sourceFolder() { return STRATA_SOURCE_DIR; }
 std::filesystem::path programFolder() { return STRATA_BIN_DIR; }
 

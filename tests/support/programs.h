@@ -13,13 +13,14 @@ namespace strata::test {
 
 using Json = nlohmann::json;
 
-/// The JSON object that `--json` prints as the last line.
+/// The JSON object that a program prints as its last line with `--json`. Throws where it printed nothing.
 inline Json lastLine(const Finished& finished) {
   const std::vector<std::string> lines = linesOf(finished.out);
   if (lines.empty()) throw std::runtime_error("nothing on stdout; stderr: " + finished.err);
   return Json::parse(lines.back());
 }
 
+/// Runs strata-convert with `--json`.
 inline Finished convert(const std::vector<std::string>& inputs, const std::filesystem::path& store,
                         const std::vector<std::string>& options = {}) {
   std::vector<std::string> arguments = inputs;
@@ -28,7 +29,7 @@ inline Finished convert(const std::vector<std::string>& inputs, const std::files
   return runProgram("strata-convert", arguments);
 }
 
-/// Converts, expects that to work, and gives what `--json` said.
+/// Converts and returns what `--json` printed. Throws where the conversion fails.
 inline Json mustConvert(const std::vector<std::string>& inputs, const std::filesystem::path& store,
                         const std::vector<std::string>& options = {}) {
   const Finished finished = convert(inputs, store, options);
@@ -36,6 +37,7 @@ inline Json mustConvert(const std::vector<std::string>& inputs, const std::files
   return lastLine(finished);
 }
 
+/// What strata-info prints with `--json`. Throws where it fails.
 inline Json mustInfo(const std::filesystem::path& store, bool verify = false) {
   std::vector<std::string> arguments{store.string(), "--json"};
   if (verify) arguments.push_back("--verify");
@@ -44,13 +46,14 @@ inline Json mustInfo(const std::filesystem::path& store, bool verify = false) {
   return lastLine(finished);
 }
 
+/// Exports the store to the file `las` and reads that. Throws where either fails.
 inline LasFile mustExport(const std::filesystem::path& store, const std::filesystem::path& las) {
   const Finished finished = runProgram("strata-export", {store.string(), "-o", las.string(), "--force"});
   if (finished.exitCode != 0) throw std::runtime_error("strata-export failed: " + finished.err);
   return readLas(las);
 }
 
-/// What every failure looks like: exit code 1, and on stderr nothing but one line that begins with "error: ".
+/// Expects what every failure must look like: exit code 1, and on stderr only one line, which begins with "error: ".
 inline void expectFailure(const Finished& finished) {
   EXPECT_EQ(finished.exitCode, 1) << finished.err;
   const std::vector<std::string> lines = linesOf(finished.err);
@@ -59,29 +62,31 @@ inline void expectFailure(const Finished& finished) {
   EXPECT_TRUE(finished.err.size() < 600 && finished.err.ends_with('\n')) << finished.err;
 }
 
-/// A conversion that failed and left nothing under the final name.
+/// Expects that a conversion failed and left nothing under the store's name.
 inline void expectRefused(const Finished& finished, const std::filesystem::path& store) {
   expectFailure(finished);
   EXPECT_FALSE(std::filesystem::exists(store)) << store << " was left behind";
 }
 
-/// Wrong usage: exit code 2 and a line that says so.
+/// Expects exit code 2, for wrong usage, and a line that begins with "error: ".
 inline void expectUsageError(const Finished& finished) {
   EXPECT_EQ(finished.exitCode, 2) << finished.err;
   EXPECT_EQ(finished.err.rfind("error: ", 0), 0u) << finished.err;
 }
 
+/// True when stderr contains `words`.
 inline bool mentions(const Finished& finished, const std::string& words) {
   return finished.err.find(words) != std::string::npos;
 }
 
+/// True when the two stores are equal, byte for byte.
 inline bool sameStores(const std::filesystem::path& a, const std::filesystem::path& b) {
   for (const char* name : {"hierarchy.bin", "points.bin", "store.json"})
     if (readWhole(a / name) != readWhole(b / name)) return false;
   return true;
 }
 
-/// A regular grid of n x n x 1 points, one LAS unit (1 cm) apart times `step`.
+/// A regular grid of n x n points, `step` LAS units apart, whose heights vary by less than 50 units.
 inline std::vector<std::array<std::int32_t, 3>> gridPoints(int n, int step = 10) {
   std::vector<std::array<std::int32_t, 3>> points;
   for (int y = 0; y < n; ++y)

@@ -5,12 +5,12 @@
 
 namespace strata::test {
 
-/// Numbers and directions for property tests, the same for a seed wherever they run.
+/// Random numbers and directions for property tests. A seed gives the same sequence in every run.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}
   double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  /// Evenly over the sphere.
+  /// A unit vector; all directions are equally likely.
   glm::dvec3 direction() {
     while (true) {
       const glm::dvec3 d(in(-1, 1), in(-1, 1), in(-1, 1));

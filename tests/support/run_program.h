@@ -20,19 +20,20 @@
 
 namespace strata::test {
 
-/// What a program left behind.
+/// A program that has ended, and what it printed.
 struct Finished {
-  int exitCode = -1;  ///< 128 + signal where a signal ended it
+  int exitCode = -1;  ///< or 128 + the signal that ended it
   std::string out, err;
   double seconds = 0.0;
 };
 
 struct RunOptions {
-  bool asNobody = false;          ///< as user and group 65534; only root can ask for it
-  double killAfterSeconds = 0.0;  ///< `signal` then; 0 = never
+  bool asNobody = false;          ///< run as user and group 65534, which only root can do
+  double killAfterSeconds = 0.0;  ///< when the program gets `signal`; 0: never
   int signal = SIGKILL;
 };
 
+/// All bytes of a file; empty where it cannot be read.
 inline std::string readWhole(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
@@ -40,7 +41,8 @@ inline std::string readWhole(const std::filesystem::path& file) {
 
 inline std::filesystem::path programPath(const std::string& name) { return programFolder() / name; }
 
-/// Runs one program to its end, with no input. `program` is one of ours or, with a slash in it, a path.
+/// Runs a program to its end, with nothing on stdin. `program` is the name of one of ours, or a path, which contains a
+/// slash.
 inline Finished runProgram(const std::string& program, const std::vector<std::string>& arguments,
                            const RunOptions& options = {}) {
   const TempFolder folder;
@@ -83,6 +85,7 @@ inline Finished runProgram(const std::string& program, const std::vector<std::st
   return finished;
 }
 
+/// The lines of `text`, without their ends.
 inline std::vector<std::string> linesOf(const std::string& text) {
   std::vector<std::string> lines;
   std::size_t begin = 0;

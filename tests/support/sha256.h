@@ -7,7 +7,7 @@
 
 namespace strata::test {
 
-/// SHA-256 (FIPS 180-4), to compare records with sums that other programs have made.
+/// SHA-256 (FIPS 180-4), for comparing records with the sums that other programs computed.
 class Sha256 {
  public:
   void add(std::span<const std::byte> bytes) {
@@ -18,7 +18,7 @@ class Sha256 {
     }
   }
 
-  /// Lower-case hexadecimal digits; ends the sum.
+  /// The sum as lower-case hexadecimal digits. Nothing may be added after it.
   std::string hex() {
     const std::uint64_t bits = total_ * 8;
     constexpr std::byte kOne[1] = {std::byte{0x80}}, kZero[1] = {std::byte{0}};

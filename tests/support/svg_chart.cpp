@@ -8,7 +8,7 @@
 namespace strata::test {
 namespace {
 
-// All in SVG user units.
+// All lengths are in SVG user units.
 constexpr double kPanelWidth = 360.0, kPanelHeight = 250.0;
 constexpr double kLeft = 52.0, kRight = 12.0, kTop = 30.0, kBottom = 44.0;
 constexpr double kKeyRow = 20.0;

@@ -14,17 +14,17 @@ struct Chart {
   std::string title;
   std::string xLabel, yLabel;
   std::vector<ChartLine> lines;
-  double yMin = 0.0, yMax = 1.0;
-  std::vector<double> xTicks;  ///< ascending; first and last bound the axis
+  double yMin = 0.0, yMax = 1.0;  ///< ends of the axis
+  std::vector<double> xTicks;  ///< ascending; the first and the last are the ends of the axis
   std::vector<std::string> xTickLabels;
   std::vector<double> yTicks;
-  std::vector<double> yMarks;  ///< dashed lines across, such as a wanted value
+  std::vector<double> yMarks;  ///< heights of dashed lines, such as a value to be reached
 };
 
-/// A whole SVG document: the panels row by row, `columns` in a row, and one key of the lines below.
+/// A whole SVG document: the panels row by row, `columns` in each row, and below them one key for the lines of all.
 std::string svgFigure(const std::vector<Chart>& charts, int columns);
 
-/// Round steps that hold all of `values`: sets yMin, yMax and yTicks.
+/// Sets yMin, yMax and yTicks so that the axis has round steps and holds the values of all lines.
 void fitYAxis(Chart& chart);
 
 }  // namespace strata::test

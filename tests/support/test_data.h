@@ -9,14 +9,14 @@
 
 namespace strata::test {
 
-/// Folder of the real scans with MANIFEST.tsv and EXPECTED.tsv; empty where they are absent.
+/// The folder of the real scans, with MANIFEST.tsv and EXPECTED.tsv; empty where they are absent.
 inline std::filesystem::path dataFolder() {
   if (const char* named = std::getenv("STRATA_TEST_DATA")) return named;
   const std::filesystem::path beside = sourceFolder() / ".." / "shared" / "data";
   return std::filesystem::exists(beside / "MANIFEST.tsv") ? beside : std::filesystem::path();
 }
 
-/// A folder of its own for one test, removed at the end.
+/// A new, empty folder, which is removed with this object.
 class TempFolder {
  public:
   TempFolder() {

@@ -12,10 +12,11 @@
 
 namespace strata::test {
 
-/// A program that runs beside the test; ended with it.
+/// A program that runs beside the test and is killed with this object.
 class RunningProgram {
  public:
-  /// In `folder`; what it says on stderr goes to the file `saidTo` there.
+  /// Starts the program in `folder`. Its stderr goes to the file `saidTo` there. It inherits the file descriptor
+  /// `keptOpen` and no other.
   RunningProgram(const std::string& program, const std::vector<std::string>& arguments,
                  const std::map<std::string, std::string>& environment, const std::filesystem::path& folder,
                  const std::string& saidTo, int keptOpen = -1)
@@ -44,7 +45,7 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
-  /// Its exit code, when it has ended.
+  /// Its exit code, once it has ended.
   std::optional<int> ended() {
     int status = 0;
     if (process_ > 0 && waitpid(process_, &status, WNOHANG) == process_) {
@@ -54,6 +55,7 @@ class RunningProgram {
     return process_ > 0 ? std::nullopt : std::optional(code_);
   }
   pid_t process() const { return process_; }
+  /// Everything on its stderr so far.
   std::string said() const { return readWhole(saidTo_); }
 
  private:
@@ -68,15 +70,15 @@ struct HandOptions {
   std::string dpi = "96";
 };
 
-/// A hand that uses strata-view in an X server of its own. It waits for what the window says of itself (`--state`):
-/// everything done has been taken in by the viewer when the call that did it returns.
+/// Uses strata-view by mouse and keys, in an X server of its own. Every call waits until the viewer has taken in the
+/// events that the call made, which the viewer reports after every frame (`--state`).
 class ViewerHand {
  public:
   static constexpr const char* kXvfb = "/usr/bin/Xvfb";
   static constexpr const char* kXdotool = "/usr/bin/xdotool";
   static bool possible() { return std::filesystem::exists(kXvfb) && std::filesystem::exists(kXdotool); }
 
-  /// Starts the viewer in `folder`. Throws where it does not come up.
+  /// Starts the server and the viewer, in `folder`. Throws where one of them does not start.
   ViewerHand(const std::filesystem::path& folder, std::vector<std::string> arguments, HandOptions options = {})
       : folder_(folder) {
     int ends[2];
@@ -99,12 +101,13 @@ class ViewerHand {
   }
 
   const std::filesystem::path& folder() const { return folder_; }
-  /// What the window said last.
+  /// The newest state that the window has reported.
   Json state() const { return newest_; }
   std::string said() const { return viewer_->said(); }
   const std::string& display() const { return display_; }
 
-  /// Waits until what the window says fulfils `wanted`, and gives it. Throws where it never does.
+  /// Waits until the state fulfils `wanted`, and returns it. Throws where it does not within kPatience; `what` is for
+  /// the message.
   Json until(const std::string& what, const std::function<bool(const Json&)>& wanted) {
     const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(kPatience);
     while (!readState() || !wanted(newest_)) {
@@ -121,13 +124,13 @@ class ViewerHand {
   Json until(const std::string& field, const Json& value) {
     return until(field + " = " + value.dump(), [&](const Json& s) { return s.at(field) == value; });
   }
-  /// So many more frames.
+  /// Waits for `count` more frames.
   Json frames(int count) {
     const auto wanted = newest_["frame"].get<std::int64_t>() + count;
     return until("more frames", [wanted](const Json& s) { return s["frame"].get<std::int64_t>() >= wanted; });
   }
 
-  /// As xdotool names them: "m", "ctrl+s", "Return".
+  /// Presses a key, by xdotool's name for it: "m", "ctrl+s", "Return".
   void key(const std::string& name) {
     const auto keys = 1 + std::count(name.begin(), name.end(), '+');
     counted("keys", 2 * static_cast<int>(keys), {"key", name});
@@ -147,7 +150,7 @@ class ViewerHand {
     moveTo(x, y);
     counted("buttons", 2, {"click", "1"});
   }
-  /// One after the other without a pause between them.
+  /// Clicks at all places without a pause between them.
   void clicksAtOnce(const std::vector<std::pair<int, int>>& places) {
     std::vector<std::string> all;
     for (const auto& [x, y] : places)
@@ -168,7 +171,7 @@ class ViewerHand {
     counted("wheel", std::abs(notches),
             {"click", "--repeat", std::to_string(std::abs(notches)), "--delay", "5", notches > 0 ? "4" : "5"});
   }
-  /// An item of a panel, by the name that the viewer gives it.
+  /// Clicks an item of a panel, by the name that the state has for it.
   void clickItem(const std::string& name) {
     const Json place =
         until("the item " + name, [&](const Json& s) { return s["items"].contains(name); })["items"][name];
@@ -187,24 +190,24 @@ class ViewerHand {
     until("hidden", Json(false));
     takeFocus();
   }
-  /// Control + S; what it wrote to `file` in the folder.
+  /// Presses Control + S and returns what that wrote to `file` in the folder.
   Json save(const std::string& file) {
     key("ctrl+s");
     return Json::parse(readWhole(folder_ / file));
   }
-  /// The window that follows the one which asked whether to convert a scan.
+  /// Turns from the window that asked whether to convert a scan to the one that follows it.
   void turnToScene() {
     until("the scene", [](const Json& s) { return s["drawn"].get<int>() > 0 && s["settled"].get<bool>(); });
     takeFocus();
   }
-  /// A picture of the screen, as a PNG file in the folder.
+  /// Writes a picture of the whole screen to a PNG file in the folder.
   void photograph(const std::string& name) {
     const Finished made =
         runProgram("/usr/bin/ffmpeg", {"-loglevel", "error", "-y", "-f", "x11grab", "-draw_mouse", "0", "-i", display_,
                                        "-frames:v", "1", (folder_ / name).string()});
     if (made.exitCode != 0) throw std::runtime_error("no picture: " + made.err);
   }
-  /// Control + Q, and the exit code.
+  /// Presses Control + Q and returns the exit code.
   int quit() {
     xdotool({"key", "ctrl+q"});
     const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(kPatience);
@@ -213,7 +216,7 @@ class ViewerHand {
       if (std::chrono::steady_clock::now() > giveUp) throw std::runtime_error("the viewer does not quit");
     }
   }
-  /// Hundredths of a second of CPU time that all its threads have had.
+  /// The CPU time of all threads of the viewer, in hundredths of a second.
   long cpuTicks() const {
     std::string text = readWhole("/proc/" + std::to_string(viewer_->process()) + "/stat");
     std::istringstream fields(text.substr(text.rfind(')') + 2));
@@ -241,7 +244,7 @@ class ViewerHand {
     if (finished.exitCode != 0) throw std::runtime_error("xdotool fails: " + arguments[4] + " " + finished.err);
     return finished.out;
   }
-  /// Does something that the viewer takes in as `events` more of what `counter` counts.
+  /// Calls xdotool, and waits until the viewer's count `counter` of events has grown by `events`.
   void counted(const char* counter, int events, const std::vector<std::string>& what) {
     const auto wanted = until("its state", [](const Json&) { return true; })[counter].get<int>() + events;
     xdotool(what);
@@ -249,7 +252,7 @@ class ViewerHand {
   }
   void takeFocus() {
     window_ = linesOf(xdotool({"search", "--sync", "--onlyvisible", "--name", "Strata"})).at(0);
-    // A window is not viewable at once.
+    // A window that has just been mapped cannot take the focus yet, so this is tried again and again.
     until("the focus", [this](const Json& s) {
       if (s["focused"].get<bool>()) return true;
       runProgram("/usr/bin/env", {"DISPLAY=" + display_, "timeout", "60", kXdotool, "windowfocus", window_});

@@ -97,7 +97,7 @@ TEST_F(BadInput, AHeaderThatPromisesMorePointsThanThereAreIsRefused) {
   expectRefusal(las("short.las", spec), "150");
 }
 
-TEST_F(BadInput, SkippingDamageKeepsTheSoundPointsAndCountsTheRest) {
+TEST_F(BadInput, SkippingDamageKeepsTheSoundPointsAndCountsTheOthers) {
   LasSpec spec = soundScan();
   spec.claimedPoints = 150;
   const Json result = mustConvert({las("short.las", spec)}, store(), {"--skip-damaged"});
@@ -221,7 +221,7 @@ class SmallDisk {
   bool mounted_ = false;
 };
 
-TEST_F(BadInput, NoSpaceLeftForTheStoreIsSaidAndNothingIsLeft) {
+TEST_F(BadInput, NoSpaceLeftForTheStoreIsReportedAndNothingRemains) {
   const fs::path disk = folder_ / "disk";
   const SmallDisk small(disk, "600k");
   if (!small.mounted()) GTEST_SKIP() << "a small file system can be mounted only as root";
@@ -233,11 +233,11 @@ TEST_F(BadInput, NoSpaceLeftForTheStoreIsSaidAndNothingIsLeft) {
   EXPECT_TRUE(fs::is_empty(folder_ / "temp"));
 }
 
-TEST_F(BadInput, NoSpaceLeftForTemporaryFilesIsSaidAndNothingIsLeft) {
+TEST_F(BadInput, NoSpaceLeftForTemporaryFilesIsReportedAndNothingRemains) {
   const fs::path disk = folder_ / "disk";
   const SmallDisk small(disk, "600k");
   if (!small.mounted()) GTEST_SKIP() << "a small file system can be mounted only as root";
-  const Finished finished =  // more points than this memory holds at a time, so that some have to be put aside
+  const Finished finished =  // more points than fit this memory at once, so that some go to the temporary file
       convert({"synthetic:plane?points=6e6"}, store(), {"--temp", disk.string(), "--memory", "512M"});
   expectRefused(finished, store());
   EXPECT_TRUE(mentions(finished, "No space left")) << finished.err;

@@ -1,4 +1,4 @@
-// What strata-bench leaves behind: the trace, the page, the papers' tables.
+// The output of strata-bench: the trace, the page, the tables of the papers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ class Bench : public testing::Test {
   }
   static Json report(const std::string& run) { return Json::parse(readWhole(file(run) / "report.json")); }
 
-  /// A column of frames.csv.
+  /// The values of one column of frames.csv.
   static std::vector<double> column(const std::string& run, const std::string& name) {
     std::ifstream csv(file(run) / "frames.csv");
     const auto cells = [](const std::string& line) {
@@ -78,7 +78,7 @@ struct Span {
   Json args;
 };
 
-/// By the name of the thread; `parent` is the span around each.
+/// The spans by the name of their thread. `parent` is the span around a span.
 std::map<std::string, std::vector<Span>> spansOf(const Json& trace) {
   std::map<int, std::string> threads;
   std::map<std::string, std::vector<Span>> spans, open;
@@ -159,14 +159,14 @@ TEST_F(Bench, TheTraceCoversEveryFrameAndEveryByteRead) {
   EXPECT_GT(decoded, 0.0);
 }
 
-TEST_F(Bench, WithoutATraceThereIsNone) {
+TEST_F(Bench, WithoutTheOptionThereIsNoTrace) {
   ASSERT_EQ(fly("untraced", {"--size", "160x90", "--no-trace"}).exitCode, 0);
   EXPECT_FALSE(std::filesystem::exists(file("untraced") / "trace.json"));
 }
 
 // --- measures
 
-TEST_F(Bench, TheWidestSpacingIsWhatThePointsAPixelPromiseAndMoreWhereTheBudgetEnds) {
+TEST_F(Bench, TheWidestSpacingIsThatOfThePointsPerPixelAndMoreWhereTheBudgetEnds) {
   ASSERT_EQ(fly("whole", {"--size", "320x180", "--settle", "--occlusion", "off"}).exitCode, 0);
   ASSERT_EQ(fly("scarce", {"--size", "320x180", "--settle", "--occlusion", "off", "--point-budget", "20000"}).exitCode,
             0);
@@ -177,7 +177,7 @@ TEST_F(Bench, TheWidestSpacingIsWhatThePointsAPixelPromiseAndMoreWhereTheBudgetE
   std::vector<double> sorted = whole;
   std::sort(sorted.begin(), sorted.end());
   EXPECT_NEAR(sorted[sorted.size() / 2], promised, 1e-2);
-  EXPECT_LE(sorted.back(), 1.1 * promised);  // small nodes round to whole points
+  EXPECT_LE(sorted.back(), 1.1 * promised);  // small nodes are rounded to whole points
   EXPECT_GE(*std::min_element(scarce.begin(), scarce.end()), promised - 1e-3);
   EXPECT_GT(*std::max_element(scarce.begin(), scarce.end()), 1.2 * promised);
 }
@@ -193,7 +193,7 @@ TEST_F(Bench, TheReportSaysWhatWasInThePageCache) {
 
 // --- report.html in a browser
 
-/// Headless Chromium's picture of the flight's page in a window of this size; empty where it made none.
+/// The picture that headless Chromium makes of the flight's page in a window of this size; empty where it fails.
 Image pageIn(const std::filesystem::path& page, const std::string& png, int width, int height) {
   const std::filesystem::path profile = page.parent_path() / "profile";
   const Finished shown = runProgram(
@@ -203,7 +203,7 @@ Image pageIn(const std::filesystem::path& page, const std::string& png, int widt
   return shown.exitCode == 0 && std::filesystem::exists(png) ? readPng(png) : Image{};
 }
 
-/// Share of a column of pixels that is not the paper's colour.
+/// The share of a column of pixels that differs from the colour of the paper.
 double inkAt(const Image& image, int x) {
   int ink = 0;
   for (int y = 0; y < image.height; ++y) {
@@ -214,7 +214,7 @@ double inkAt(const Image& image, int x) {
   return static_cast<double>(ink) / image.height;
 }
 
-/// Rows from the top to the last one with ink.
+/// The number of rows from the top to the last one that is not empty.
 int inkedHeight(const Image& image) {
   for (std::size_t i = image.pixels.size(); i > 0; --i)
     if (image.pixels[i - 1] != image.pixels[0])
@@ -228,11 +228,11 @@ TEST_F(Bench, ABrowserShowsTheReportOnADeskAndOnAPhoneWithNothingBeyondTheEdge) 
   for (const auto& [name, width, height] : {std::tuple{"desk", 1200, 6000}, std::tuple{"phone", 390, 9000}}) {
     const Image image = pageIn(page, file(std::string(name) + ".png").string(), width, height);
     ASSERT_EQ(image.width, width);
-    // Pictures, plots and text: thousands of colours over a long page that ends within the window.
+    // Pictures, plots and text have thousands of colours, and the long page ends within the window.
     EXPECT_GT(std::set<std::uint32_t>(image.pixels.begin(), image.pixels.end()).size(), 1000u) << name;
     EXPECT_GT(inkedHeight(image), 3000) << name;
     EXPECT_LT(inkedHeight(image), height - 10) << name;
-    // The margins are as empty as the paper: nothing is cut off.
+    // The margins are empty, so nothing is cut off.
     for (const int x : {0, 1, 2, 3, width - 4, width - 3, width - 2, width - 1}) EXPECT_EQ(inkAt(image, x), 0.0) << x;
     EXPECT_GT(inkAt(image, width / 2), 0.2) << name;
   }
@@ -287,7 +287,7 @@ void expectOnlyWordsOutsideTheMarks(const std::string& text) {
   }
 }
 
-TEST_F(Bench, EveryFigureOfTheBenchmarkPagesStandsBetweenTheMarksOfASection) {
+TEST_F(Bench, EveryFigureOfTheBenchmarkPagesLiesBetweenTheMarksOfASection) {
   if (!std::filesystem::exists("/usr/bin/python3")) GTEST_SKIP() << "python3 is not there";
   const std::filesystem::path docs = file("docs");
   copyPages(docs);
@@ -373,7 +373,8 @@ TEST_F(Bench, ConversionsMeasuredOneByOneShareTheirTables) {
 
 // --- the papers' tables
 
-/// Every table's rows, without the header and the line under it; each must have as many cells as its header.
+/// The rows of every table, without the header and the line under it. Expects each row to have one cell for every cell
+/// of the header.
 std::vector<std::vector<std::string>> tableRows(const std::string& markdown) {
   std::vector<std::vector<std::string>> rows;
   std::size_t columns = 0;
@@ -398,8 +399,8 @@ std::vector<std::vector<std::string>> tableRows(const std::string& markdown) {
 struct Suite {
   const char* name;
   const char* scale;
-  std::size_t rows;                   ///< at least
-  std::vector<std::string> hardware;  ///< of the paper
+  std::size_t rows;                   ///< the least number
+  std::vector<std::string> hardware;  ///< the paper's
 };
 
 TEST_F(Bench, EachSuitePrintsItsTablesBesideThePapers) {

@@ -1,4 +1,4 @@
-// Thirty million points in the least memory there is.
+// Thirty million points are converted in the least memory that --memory allows.
 #include "tests/support/programs.h"
 
 namespace strata::test {

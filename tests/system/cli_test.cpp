@@ -1,4 +1,4 @@
-// The command line is a contract: options, exit codes, what --json prints.
+// The command line is a contract: options, exit codes, and the output of --json.
 #include <algorithm>
 
 #include "core/image.h"
@@ -38,7 +38,7 @@ TEST(Programs, NoArgumentsIsWrongUsage) {
   for (const char* program : kPrograms) expectUsageError(runProgram(program, {}));
 }
 
-TEST(Programs, AnOptionsValueThatCannotBeUnderstoodIsWrongUsage) {
+TEST(Programs, AnOptionWithABadValueIsWrongUsage) {
   const TempFolder folder;
   const std::string store = (folder / "out.strata").string();
   const std::vector<std::vector<std::string>> wrong{
@@ -66,7 +66,7 @@ TEST(Programs, ASyntheticScanThatDoesNotExistIsNamed) {
   }
 }
 
-/// A store of a built-in room, made once.
+/// A store of the synthetic room, converted once for all tests.
 class RoomStore : public testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -178,7 +178,7 @@ TEST_F(RoomStore, AnExportOfALevelHoldsFewerPointsTheHigherTheLevel) {
   EXPECT_EQ(before, 50000u);
 }
 
-TEST_F(RoomStore, AnExportToAnUnknownEndingOrAFullBoxOfNothingIsRefused) {
+TEST_F(RoomStore, AnExportWithABadEndingBoxOrLevelIsRefused) {
   expectUsageError(runProgram("strata-export", {store().string(), "-o", (*folder_ / "out.docx").string()}));
   expectUsageError(
       runProgram("strata-export", {store().string(), "-o", (*folder_ / "out.las").string(), "--box", "1", "2"}));
@@ -213,7 +213,7 @@ TEST_F(RoomStore, SeveralFilesAndAFolderOfThemAreOneCloud) {
   for (const fs::path& made : {tiles, one, two}) fs::remove_all(made);
 }
 
-/// A picture in which something other than the background is to be seen.
+/// Expects a picture that shows something besides the background.
 void expectPicture(const fs::path& path) {
   ASSERT_TRUE(fs::exists(path)) << path;
   const Image image = readPng(path.string());

@@ -1,4 +1,4 @@
-// What a conversion as a whole must keep: its memory and every input's columns.
+// A conversion keeps its memory cap and the columns of every input.
 #include "tests/support/programs.h"
 
 namespace strata::test {
@@ -6,7 +6,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Conversion, StaysUnderItsMemoryAndPutsPointsAsideInstead) {
+TEST(Conversion, StaysUnderItsMemoryCapByWritingPointsToTheTemporaryFile) {
   const TempFolder folder;
   const Json result = mustConvert({"synthetic:plane?points=6e6"}, folder / "out.strata", {"--memory", "512M"});
   EXPECT_EQ(result.at("points"), 6000000);
@@ -15,8 +15,8 @@ TEST(Conversion, StaysUnderItsMemoryAndPutsPointsAsideInstead) {
   EXPECT_EQ(mustInfo(folder / "out.strata", true).at("bad_nodes"), 0);
 }
 
-/// 19 chunks, of which some lie in one cell: they are merged in two rounds.
-TEST(Conversion, OfManyChunksGivesTheSameBytesForAnyNumberOfThreads) {
+// The scan has 19 chunks. Some of them lie in one cell, so that merging takes two rounds.
+TEST(Conversion, WithManyChunksGivesTheSameBytesForAnyNumberOfThreads) {
   const TempFolder folder;
   for (const char* threads : {"1", "2", "8"})
     mustConvert({"synthetic:city?points=3e6&seed=3"}, folder / (std::string(threads) + ".strata"),
@@ -26,7 +26,7 @@ TEST(Conversion, OfManyChunksGivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_EQ(mustInfo(folder / "8.strata", true).at("bad_nodes"), 0);
 }
 
-TEST(Conversion, TheColumnsThatTheUserNamesAreTaken) {
+TEST(Conversion, TakesTheColumnsThatTheUserNames) {
   const TempFolder folder;
   writeBytes(folder / "scan.txt", "7 1 2 3\n8 4 5 6\n");
   mustConvert({(folder / "scan.txt").string()}, folder / "out.strata", {"--columns", "intensity,z,y,x"});
@@ -35,7 +35,7 @@ TEST(Conversion, TheColumnsThatTheUserNamesAreTaken) {
   EXPECT_EQ(bounds.at("max"), Json({6.0, 5.0, 4.0}));
 }
 
-TEST(Conversion, ColumnsThatMakeNoSenseAreRefused) {
+TEST(Conversion, RefusesColumnsThatMakeNoSense) {
   const TempFolder folder;
   writeBytes(folder / "scan.txt", "7 1 2 3\n8 4 5 6\n");
   for (const char* columns : {"x,y", "x,y,z,nonsense", "x,y,z,x", ""}) {
@@ -45,7 +45,7 @@ TEST(Conversion, ColumnsThatMakeNoSenseAreRefused) {
   }
 }
 
-TEST(Conversion, FilesOfDifferentFormatsAreOneCloud) {
+TEST(Conversion, TakesFilesOfDifferentFormatsAsOneCloud) {
   const TempFolder folder;
   LasSpec spec;
   spec.points = gridPoints(20);

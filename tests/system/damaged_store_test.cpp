@@ -1,4 +1,4 @@
-// A store that was changed after the conversion: strata-info --verify finds every flipped byte.
+// `strata-info --verify` finds every bit that was changed in a store after the conversion.
 #include <random>
 
 #include "tests/support/programs.h"
@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A small store of several nodes, copied afresh for each damage.
+/// A small store of several nodes, and a copy that the test damages.
 class DamagedStore : public testing::Test {
  protected:
   DamagedStore() {

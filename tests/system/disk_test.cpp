@@ -1,4 +1,4 @@
-// Disks that are too small, and folders that are gone in the middle of a conversion.
+// Disks that are too small, and folders that vanish in the middle of a conversion.
 #include <fstream>
 
 #include "converter/journal/build_folder.h"
@@ -11,11 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Disk, ThatTakesNoMoreOfAFileEndsTheConversionAndLeavesNothing) {
+TEST(Disk, ALimitOnTheSizeOfFilesEndsTheConversionWhichLeavesNothing) {
   const TempFolder folder;
   const fs::path store = folder / "a.strata", temp = folder / "temp";
   fs::create_directory(temp);
-  // Files of at most so many KiB: the temporary points, points.bin and the journal run into it in turn.
+  // The largest size of a file in KiB. The temporary points, points.bin and the journal reach it in turn.
   for (const char* most : {"8000", "1000", "100", "4"}) {
     std::string command =
         std::string("trap '' XFSZ; ulimit -f ") + most + "; exec " + programPath("strata-convert").string();
@@ -27,9 +27,9 @@ TEST(Disk, ThatTakesNoMoreOfAFileEndsTheConversionAndLeavesNothing) {
   }
 }
 
-TEST(Disk, ThatIsFullEndsTheConversionAndIsAsEmptyAsBefore) {
+TEST(Disk, AFullDiskEndsTheConversionAndIsAsEmptyAsBefore) {
   const TempFolder folder;
-  // A file system in memory that only the commands behind `unshare` see.
+  // Only the commands that `unshare` runs see this file system, which lies in memory.
   const std::string disk = (folder / "disk").string();
   fs::create_directory(disk);
   const auto onDisk = [&](const std::string& size, const std::string& command) {
@@ -48,14 +48,14 @@ TEST(Disk, ThatIsFullEndsTheConversionAndIsAsEmptyAsBefore) {
       continue;
     }
     ++full;
-    expectFailure(finished);  // and `ls` found nothing
+    expectFailure(finished);  // its one line is the error, so `ls` found nothing
     EXPECT_TRUE(mentions(finished, "No space left")) << finished.err;
   }
   EXPECT_GE(full, 4);
   EXPECT_LT(full, 8);
 }
 
-/// Converts, and removes `lost` when `stage` begins. What Error says.
+/// Converts, removes `lost` when `stage` begins, and returns the message of the Error that follows.
 std::string messageWithout(const fs::path& lost, const std::string& stage, const ConvertOptions& options) {
   ConvertControl control;
   control.progress = [&](const Progress& progress) {
@@ -69,7 +69,7 @@ std::string messageWithout(const fs::path& lost, const std::string& stage, const
   return {};
 }
 
-TEST(Disk, WhoseFolderVanishesIsNamedAndTheInputStaysAsItWas) {
+TEST(Disk, AFolderThatVanishesIsNamedAndTheInputStaysAsItWas) {
   for (const char* stage : {stage::kDistribute, stage::kBuild, stage::kMerge, stage::kWrite}) {
     const TempFolder folder;
     const fs::path scan = folder / "scan.las", place = folder / "place", temp = folder / "temp";
@@ -94,7 +94,7 @@ TEST(Disk, WhoseFolderVanishesIsNamedAndTheInputStaysAsItWas) {
   }
 }
 
-TEST(Disk, WithTheTemporaryPointsThatIsGoneIsSaidByResume) {
+TEST(Disk, ResumeSaysThatTheTemporaryPointsAreGone) {
   const TempFolder folder;
   const fs::path store = folder / "a.strata", temp = folder / "temp";
   fs::create_directory(temp);

@@ -1,4 +1,4 @@
-// Scans that are spread in ways that break converters: every point comes back, under the memory cap.
+// Scans whose points are spread so unevenly that converters break: every point comes back, under the memory cap.
 #include <functional>
 #include <random>
 
@@ -13,8 +13,8 @@ constexpr int kPoints = 1'100'000;  // more than twice what one chunk holds at 5
 
 using Triple = std::array<std::int32_t, 3>;
 
-/// Converts in 512M, and expects every record back, whatever the order, and the memory kept. `tempShare`: most
-/// temporary disk, in sizes of the input.
+/// Converts with --memory 512M and expects every record back, in any order, within the memory and within a temporary
+/// file of at most `tempShare` times the size of the input.
 void expectComesBack(const LasSpec& spec, double tempShare = 1.0) {
   const TempFolder folder;
   writeLas(folder / "scan.las", spec);
@@ -42,7 +42,7 @@ std::int32_t upTo(std::mt19937& random, std::int32_t end) {
 }
 
 TEST(Limits, NineTenthsOfThePointsInATenThousandthOfTheVolume) {
-  constexpr std::int32_t kSide = 2'000'000, kDense = 92'800;  // its cube is a ten-thousandth
+  constexpr std::int32_t kSide = 2'000'000, kDense = 92'800;  // (kDense / kSide) cubed is a ten-thousandth
   expectComesBack(scanOf([](int i, std::mt19937& random) {
     const std::int32_t side = i % 10 == 0 ? kSide : kDense, from = i % 10 == 0 ? 0 : kSide / 3;
     return Triple{from + upTo(random, side), from + upTo(random, side), from + upTo(random, side)};
@@ -61,8 +61,8 @@ TEST(Limits, AllOnALine) {
 }
 
 TEST(Limits, TwoClustersTenThousandKilometresApart) {
-  // Only two cells of the first division hold anything, and while one of them is divided again both of its copies are
-  // on disk; each thread has one.
+  // Only two cells of the first division have points. While such a cell is split its points are on disk twice, and each
+  // thread splits one.
   constexpr double kTempShare = 1.5;
   const LasSpec spec = scanOf([](int i, std::mt19937& random) {
     const std::int32_t from = i % 2 == 0 ? -500'000'000 : 500'000'000;
@@ -96,8 +96,8 @@ TEST(Limits, NoExtentInOneTwoOrThreeAxes) {
 TEST(Limits, AttributesThatAllVaryDoNotNeedMoreDiskThanTheInput) {
   const TempFolder folder;
   const Json result = mustConvert({"synthetic:city?points=2e6"}, folder / "a.strata", {"--memory", "512M"});
-  EXPECT_LE(result.at("temp_peak_bytes").get<std::uint64_t>(), 2'000'000u * 21u);  // 12 + 9 bytes a point
-  EXPECT_GT(result.at("temp_peak_bytes").get<std::uint64_t>(), 2'000'000u * 8u);   // it is really there
+  EXPECT_LE(result.at("temp_peak_bytes").get<std::uint64_t>(), 2'000'000u * 21u);  // 12 + 9 bytes per point
+  EXPECT_GT(result.at("temp_peak_bytes").get<std::uint64_t>(), 2'000'000u * 8u);   // the temporary file was needed
 }
 
 TEST(Limits, OneScanOfTenPointsAndOneOfTenMillion) {

@@ -1,4 +1,4 @@
-// The kill test at length.
+// A conversion that is killed 200 times, at other moments each time.
 #include "tests/support/interrupted.h"
 
 namespace strata::test {

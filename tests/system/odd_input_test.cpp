@@ -96,7 +96,7 @@ TEST_F(OddInput, TheWholeRangeOfLasIntegersConverts) {
   expectRoundTrip(spec);
 }
 
-TEST_F(OddInput, AnOutlierTwoThousandKilometresAwayMakesNobodyCoarser) {
+TEST_F(OddInput, AnOutlierTwoThousandKilometresAwayMakesTheOtherPointsNoCoarser) {
   LasSpec spec = gridScan();
   spec.scale = {0.001, 0.001, 0.001};
   spec.offset = {482000.0, 4390000.0, 1800.0};
@@ -164,7 +164,7 @@ TEST_F(OddInput, PointsAtTheOriginMakeTheGridNoFiner) {
       "ply\nformat binary_little_endian 1.0\nelement vertex 300\nproperty float x\nproperty float y\n"
       "property float z\nend_header\n";
   for (int i = 0; i < 300; ++i) {
-    const bool met = i % 3 == 0;  // most rays met nothing
+    const bool met = i % 3 == 0;  // scanners write (0, 0, 0) for a ray that met nothing
     const float place[3] = {met ? 10.0f + 0.1f * static_cast<float>(i) : 0.0f, met ? 5.0f : 0.0f, met ? -2.5f : 0.0f};
     ply.append(reinterpret_cast<const char*>(place), sizeof place);
   }
@@ -197,7 +197,7 @@ TEST_F(OddInput, ChunksBehindTheCountedPointsAreWarnedOf) {
             std::string::npos);
   const std::uint64_t counted = 60000;  // lie in three chunks of at most 50,000
   std::fstream header(laz, std::ios::binary | std::ios::in | std::ios::out);
-  header.seekp(247);  // LAS 1.4: the number of point records
+  header.seekp(247);  // where LAS 1.4 has the number of point records
   header.write(reinterpret_cast<const char*>(&counted), sizeof counted);
   header.close();
   const Finished finished = runProgram("strata-convert", {laz, "-o", (folder_ / "some.strata").string()});

@@ -1,4 +1,4 @@
-// --plan: what a conversion will take, said beforehand and without converting.
+// `strata-convert --plan` says what a conversion will need, without converting.
 #include "tests/support/programs.h"
 
 namespace strata::test {
@@ -27,7 +27,7 @@ TEST(Plan, NeedsNoOutputAndLeavesNothingBehind) {
 
 TEST(Plan, TellsTheSizeOfTheStoreWithinAFifth) {
   const TempFolder folder;
-  // Copies of points take the fewer bytes the more there are; a sample of them says too much.
+  // Equal points take fewer bytes each the more there are, so that the plan, which looks at a sample, is too high.
   const std::pair<const char*, double> kInputs[] = {{"synthetic:city?points=4000000", 0.2},
                                                     {"synthetic:terrain?points=4000000", 0.2},
                                                     {"synthetic:sphere?points=3000000", 0.2},

@@ -63,7 +63,7 @@ TEST_P(LasScan, ComesBackBitForBit) {
   expectRecordsComeBack(GetParam());
 }
 
-/// The tiles and the large file are in large_scans_test.cpp.
+// The tiles and the large file are in large_scans_test.cpp.
 bool isRoundTripped(const RealScan& scan) {
   const int format = scan.pointFormat();
   return scan.isLas() && !mustBeRefused(scan) && !scan.isTile() && scan.points < 1000000 &&

@@ -1,4 +1,4 @@
-// A conversion that ends before its time: killed, stopped, out of disk, with other inputs or options the next time.
+// Conversions that end early: killed, stopped or out of disk, and resumed with the same or other inputs and options.
 #include <random>
 
 #include "converter/journal/journal.h"
@@ -15,7 +15,7 @@ TEST(Resume, GivesTheSameNormalsWhereverTheConversionWasKilled) {
   expectKillsResume(6, {"synthetic:plane?points=1e5", "synthetic:degenerate?points=5e4"}, {"--normals"});
 }
 
-TEST(Resume, EndsThoughKilledAgainAndAgain) {
+TEST(Resume, ComesToItsEndThoughItIsKilledAgainAndAgain) {
   const TempFolder folder;
   const fs::path whole = folder / "whole.strata", store = folder / "killed.strata";
   const Finished undisturbed = runProgram("strata-convert", convertWords(kScan, whole, {}));
@@ -23,7 +23,7 @@ TEST(Resume, EndsThoughKilledAgainAndAgain) {
   int killed = 0;
   for (;; seconds *= 1.1) {
     const Finished finished = interrupt(kScan, store, seconds, {"--resume"}, SIGKILL);
-    if (fs::exists(store)) break;  // published, if perhaps killed while it was reported
+    if (fs::exists(store)) break;  // the store is complete, even if the program was killed before it said so
     ASSERT_EQ(finished.exitCode, 128 + SIGKILL) << finished.err;
     ASSERT_LT(++killed, 100);
   }
@@ -32,7 +32,7 @@ TEST(Resume, EndsThoughKilledAgainAndAgain) {
   expectNothingElse(store);
 }
 
-TEST(Resume, GoesOnAfterCtrlCThatSaysHow) {
+TEST(Resume, GoesOnAfterCtrlCWhichSaysHow) {
   const TempFolder folder;
   const fs::path whole = folder / "whole.strata", store = folder / "stopped 'n' cut.strata", temp = folder / "temp";
   fs::create_directory(temp);
@@ -48,7 +48,7 @@ TEST(Resume, GoesOnAfterCtrlCThatSaysHow) {
     }
     ++stopped;
     expectRefused(finished, store);
-    if (!fs::exists(buildingOf(store))) continue;  // before anything was begun
+    if (!fs::exists(buildingOf(store))) continue;  // it was stopped before it began
     const std::size_t at = finished.err.find("go on with: ");
     ASSERT_NE(at, std::string::npos) << finished.err;
     const std::string command = finished.err.substr(at + 12);
@@ -98,7 +98,7 @@ TEST(Resume, NamesTheInputThatChangedOrIsGone) {
   const Finished gone = runProgram("strata-convert", convertWords({scan.string()}, store, {"--resume"}));
   expectRefused(gone, store);
   EXPECT_TRUE(mentions(gone, scan.string())) << gone.err;
-  EXPECT_TRUE(fs::exists(buildingOf(store) / "journal"));  // nothing of it is lost by trying
+  EXPECT_TRUE(fs::exists(buildingOf(store) / "journal"));  // the attempt has cost nothing
 }
 
 TEST(Resume, IsOfferedAndForceStartsAgain) {

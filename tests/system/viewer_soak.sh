@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# strata-view moved about at random by mouse and keys, inside an X server, while its memory is watched. Fails when the
-# memory of the last quarter of the time is more than a few per cent above that of the quarter after warming up.
-# usage: xvfb-run -a -s "-screen 0 1024x768x24 -noreset" viewer_soak.sh STRATA_VIEW STORE FOLDER [MINUTES]; leaves FOLDER/soak.csv
+# Moves strata-view at random by mouse and keys, in an X server, and watches its memory. Fails when the memory in the
+# last quarter of the time is more than a few per cent above that in the second quarter. Writes FOLDER/soak.csv.
+# usage: xvfb-run -a -s "-screen 0 1024x768x24 -noreset" viewer_soak.sh STRATA_VIEW STORE FOLDER [MINUTES]
 set -euo pipefail
 view=$(realpath "$1") store=$(realpath "$2") folder=$3 minutes=${4:-30}
-most_growth=5  # per cent; twice that in a run of less than ten minutes, which is still warming up
+most_growth=5  # per cent; a run of less than ten minutes is still warming up and may grow twice as much
 if [ "$minutes" -lt 10 ]; then most_growth=10; fi
 cd "$folder"
 RANDOM=1
@@ -32,15 +32,16 @@ something() {
     7 | 8) xdotool mousemove "$(x)" "$(y)" click --repeat $((1 + RANDOM % 8)) --delay 40 5 ;;
     9) xdotool key "$(shuf -n 1 --random-source=/dev/urandom -e F 1 3 7 O G)" ;;
     10) for key in w a s d e q; do xdotool keydown $key; sleep 0.15; xdotool keyup $key; done ;;
-    11) xdotool mousemove "$(x)" "$(y)" click 1; sleep 0.3; xdotool mousemove "$(x)" "$(y)" click --repeat 2 --delay 60 1 ;;
+    11) xdotool mousemove "$(x)" "$(y)" click 1; sleep 0.3
+        xdotool mousemove "$(x)" "$(y)" click --repeat 2 --delay 60 1 ;;
     12) xdotool key k; sleep 0.1; drag 1; xdotool key k space; sleep 1 ;;
     13) xdotool windowsize "$window" $((700 + RANDOM % 200)) $((550 + RANDOM % 150)) ;;
   esac
-  # Back to where there is something to see.
+  # Now and then the camera goes back to where there is something to see.
   if [ $((RANDOM % 12)) = 0 ]; then xdotool key f; fi
 }
 
-# The largest size first, so that what pictures take is there before memory is watched.
+# The window begins with its largest size, so that the memory of pictures is there before it is watched.
 xdotool windowsize "$window" 900 700
 sleep 2
 echo "seconds,rss_kib,actions" >soak.csv

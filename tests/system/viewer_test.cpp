@@ -1,4 +1,4 @@
-// strata-view in a virtual X server with software OpenGL, and what strata-bench leaves behind.
+// strata-view in a virtual X server with software OpenGL, and the flights and stills of strata-bench.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -86,7 +86,7 @@ TEST_F(Viewer, DrawsProgressivelyUntilThePictureIsWhole) {
     ASSERT_EQ(finished.exitCode, 0) << finished.err;
     images.push_back(readPng(png));
   }
-  std::size_t different = 0;  // the panels lie left and right, the window of progressive drawing below
+  std::size_t different = 0;  // between the panels, which lie left and right
   for (int y = 0; y < 800; ++y)
     for (int x = 370; x < 840; ++x) {
       const auto at = static_cast<std::size_t>(y) * 1200 + static_cast<std::size_t>(x);
@@ -136,7 +136,7 @@ TEST_F(Viewer, AScreenshotThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(viewInX({city().string(), "--size", "64x64", "--screenshot", "/nowhere/x.png"}).exitCode, 1);
 }
 
-TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuitAndReopen) {
+TEST_F(Viewer, PicksMeasuresOrbitsClipsRecordsTakesPicturesHidesResizesSavesQuitsAndReopens) {
   if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
   const std::filesystem::path folder = file("session");
   std::filesystem::create_directory(folder);
@@ -156,7 +156,7 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuit
   ASSERT_EQ(measured.size(), 1u);
   EXPECT_EQ(measured[0].at("kind"), "distance");
   ASSERT_EQ(measured[0].at("points").size(), 2u);
-  // Points of the scan, not of the screen: on its grid of millimetres, to the last digit.
+  // The points are those of the scan: they lie on its grid of millimetres, to the last digit.
   for (const Json& point : measured[0].at("points"))
     for (const Json& coordinate : point) {
       const double steps = coordinate.get<double>() * 1000.0;
@@ -171,14 +171,14 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuit
   hand.drag(400, 380, 520, 370);
   hand.key("k");
   hand.until("path_keys", 2);
-  hand.save(saved);  // and the path
+  hand.save(saved);  // which writes the camera path too
 
   hand.key("ctrl+p");
   hand.until("working", true);
   hand.until("working", false);
   EXPECT_EQ(hand.state().at("error"), "");
 
-  // While a path is recorded every frame is drawn; a window that nobody sees draws none all the same.
+  // While a path is being recorded every frame is drawn, but not in a window that is hidden.
   const auto drawn = [&hand] { return hand.state().at("drawn").get<int>(); };
   hand.key("r");
   hand.until("recording", true);
@@ -199,7 +199,7 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuit
   EXPECT_EQ(hand.save(saved).at("measurements"), measured);
   EXPECT_EQ(hand.quit(), 0) << hand.said();
 
-  // The picture: of the size asked for, with the scan in its middle and background around it.
+  // The picture has the size that was asked for, with the scan in the middle and background around it.
   const Image picture = readPng(folder / "city.png");
   ASSERT_EQ(picture.width, 4096);
   ASSERT_EQ(picture.height, 2560);
@@ -207,7 +207,7 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuit
   EXPECT_GT(static_cast<double>(background), 0.1 * 4096 * 2560);
   EXPECT_LT(static_cast<double>(background), 0.99 * 4096 * 2560);
 
-  // The camera path is one that strata-bench plays.
+  // strata-bench can play the camera path.
   const Json path = Json::parse(readWhole(folder / "city.path.json"));
   ASSERT_GE(path.at("keys").size(), 2u);
   EXPECT_NE(path.at("keys")[0].at("eye"), path.at("keys")[1].at("eye"));
@@ -216,7 +216,7 @@ TEST_F(Viewer, IsUsedByHandToPickMeasureOrbitClipFlyPhotographHideResizeSaveQuit
       bench("played", {"--path", (folder / "city.path.json").string(), "--settle", "--screenshot-every", "1000"});
   EXPECT_EQ(played.exitCode, 0) << played.err;
 
-  // Reopened, the measurement is drawn where it was made.
+  // The measurement is drawn again when the project is reopened.
   const std::string png = file("reopened.png").string();
   const Finished reopened =
       viewInX({(folder / saved).string(), "--backend", "cpu", "--size", "800x600", "--screenshot", png});
@@ -272,7 +272,7 @@ TEST_F(Viewer, MakesAFilmOfTwoKeysSetByHand) {
   EXPECT_FALSE(std::filesystem::exists(folder / "city.part.mp4"));
 }
 
-TEST_F(Viewer, AFilmThatCannotBeMadeIsAMessageThatStaysAndTheFilmBeforeItToo) {
+TEST_F(Viewer, AFilmThatCannotBeMadeIsReportedAndTheFilmBeforeItStays) {
   if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
   const std::filesystem::path folder = file("no_film"), programs = folder / "programs";
   std::filesystem::create_directories(programs);
@@ -289,7 +289,7 @@ TEST_F(Viewer, AFilmThatCannotBeMadeIsAMessageThatStaysAndTheFilmBeforeItToo) {
   hand.clickItem("close the message");
   hand.until("error", "");
 
-  // A disk that is full, as ffmpeg says it.
+  // This ffmpeg fails as the real one does when the disk is full.
   std::ofstream(programs / "ffmpeg") << "#!/bin/sh\nread -r line\necho 'No space left on device' >&2\nexit 1\n";
   std::filesystem::permissions(programs / "ffmpeg", std::filesystem::perms::owner_all);
   EXPECT_NE(failure().find("No space left on device"), std::string::npos) << hand.state();
@@ -329,7 +329,7 @@ TEST_F(Viewer, ANewUserGetsFromAScanToAMeasuredDistance) {
   const std::filesystem::path folder = file("first");
   std::filesystem::create_directory(folder);
   ASSERT_EQ(runProgram("strata-export", {city().string(), "-o", (folder / "scan.laz").string()}).exitCode, 0);
-  // Something that is no store stands where the store belongs: that is said, and can be put right.
+  // Something that is no store lies where the store belongs. The window says so, and the user can remove it and go on.
   std::ofstream(folder / "scan.strata") << "no store";
   ViewerHand hand(folder, {(folder / "scan.laz").string(), "--backend", "cpu", "--size", "800x600"});
   hand.clickItem("convert");
@@ -356,7 +356,7 @@ TEST_F(Viewer, AScanThatCannotBeConvertedIsRefusedInOneLine) {
   EXPECT_FALSE(std::filesystem::exists(file("broken.strata")));
 }
 
-TEST_F(Viewer, RefusesAProjectThatIsNoneInOneLine) {
+TEST_F(Viewer, RefusesAFileThatIsNoProjectInOneLine) {
   std::ofstream(file("not.json")) << "{}";
   const Finished finished = viewInX({file("not.json").string(), "--screenshot", file("not.png").string()});
   EXPECT_EQ(finished.exitCode, 1);

@@ -1,4 +1,5 @@
-// The tools of strata-view used by hand in a virtual X server: clip boxes, classes, profiles, stores that are damaged.
+// The tools of strata-view, used by mouse and keys in a virtual X server: clip boxes, classes, profiles, camera paths;
+// and stores that are damaged or lost.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kXvfbRun = "/usr/bin/xvfb-run";
 constexpr int kWidth = 1000, kHeight = 700;
-// Between the panels at the window's sides.
+// The part of the picture between the panels.
 constexpr int kLeft = 370, kRight = 650, kUpper = 40, kLower = 660;
 
 class ViewerTools : public testing::Test {
@@ -40,7 +41,7 @@ class ViewerTools : public testing::Test {
     command.insert(command.begin(), {"-a", "-s", "-screen 0 1024x768x24 -noreset"});
     return runProgram(kXvfbRun, command);
   }
-  /// The picture with the panels, as strata-view draws it of a store or a project.
+  /// The window, picture and panels, as strata-view shows a store or a project.
   static Image pictureOf(const std::vector<std::string>& arguments, const std::string& name) {
     std::vector<std::string> command{programPath("strata-view").string(),
                                      "--backend",
@@ -54,11 +55,11 @@ class ViewerTools : public testing::Test {
     EXPECT_EQ(finished.exitCode, 0) << finished.err;
     return finished.exitCode == 0 ? readPng(file(name).string()) : Image{};
   }
-  /// A session in the folder.
+  /// A viewer that shows `argument`, started in the folder.
   static ViewerHand handOn(const std::string& argument) {
     return {file("."), {argument, "--backend", "cpu", "--size", "1000x700"}};
   }
-  /// What Control + S saves now, as project(`name`).
+  /// Saves with Control + S, which writes `saved`, so that project(`name`) reads it.
   static void save(ViewerHand& hand, const std::string& saved, const std::string& name) {
     hand.save(saved);
     if (saved != name + ".project.json")
@@ -71,7 +72,7 @@ class ViewerTools : public testing::Test {
     read.view.height = kHeight;
     return read;
   }
-  /// Pixels between the panels that show points.
+  /// The number of pixels between the panels that show points.
   static int pointPixels(const Image& image) {
     if (image.pixels.empty()) return -1;
     int points = 0;
@@ -114,7 +115,7 @@ TEST_F(ViewerTools, AClipBoxIsMadeByAKeyDraggedByItsHandleKeptAndCutsThePicture)
   EXPECT_GT(after.max.z, before.max.z + 0.01 * before.size().z);
   EXPECT_EQ(after.min, before.min);
   EXPECT_EQ(glm::dvec2(after.max), glm::dvec2(before.max));
-  EXPECT_EQ(dragged.view.eye, boxed.view.eye);  // the drag was the box's, not the camera's
+  EXPECT_EQ(dragged.view.eye, boxed.view.eye);  // the drag moved the handle, not the camera
 
   const int whole = pointPixels(pictureOf({file("plain.project.json").string()}, "plain.png"));
   const int inside = pointPixels(pictureOf({file("dragged.project.json").string()}, "boxed.png"));
@@ -122,7 +123,7 @@ TEST_F(ViewerTools, AClipBoxIsMadeByAKeyDraggedByItsHandleKeptAndCutsThePicture)
   EXPECT_LT(inside, whole / 2);
 }
 
-TEST_F(ViewerTools, AShortcutFliesNotThoughControlGoesUpBeforeItsLetter) {
+TEST_F(ViewerTools, AShortcutDoesNotFlyWhenControlGoesUpBeforeItsLetter) {
   if (!ViewerHand::possible()) GTEST_SKIP() << "Xvfb or xdotool is not there";
   ViewerHand hand = handOn(store().string());
   save(hand, "city.project.json", "first");
@@ -175,7 +176,7 @@ TEST_F(ViewerTools, AProfileIsDrawnByTwoClicksShownInItsWindowAndKeptWithItsWidt
   hand.until("measuring", 2);
   hand.key("Return");
   hand.until("measured", 1);
-  // Its window opens by itself and shows the points that lie in the slab.
+  // The profile's window opens at once and shows the points in the slab.
   const Json place = hand.settled().at("items").at("profile");
   if (fs::exists("/usr/bin/ffmpeg")) {
     hand.photograph("profile.png");
@@ -185,7 +186,7 @@ TEST_F(ViewerTools, AProfileIsDrawnByTwoClicksShownInItsWindowAndKeptWithItsWidt
     for (int dy = -60; dy < 60; ++dy)
       for (int dx = -150; dx < 150; ++dx)
         ++colours[image.pixels[static_cast<std::size_t>((y + dy) * image.width + x + dx)]];
-    int ground = 0;  // the commonest colour is what lies behind the points
+    int ground = 0;  // pixels of the commonest colour, which is the background
     for (const auto& [colour, count] : colours) ground = std::max(ground, count);
     EXPECT_LT(ground, 300 * 120 - 200);
     EXPECT_GT(ground, 300 * 120 / 4);
@@ -214,7 +215,7 @@ TEST_F(ViewerTools, ACameraPathComesBackWithItsProject) {
   const Json eye = again.state().at("eye");
   again.key("space");
   again.until("the flight to end", [&](const Json& s) { return s.at("settled").get<bool>(); });
-  for (int i = 0; i < 3; ++i)  // at the last key, where it was saved
+  for (int i = 0; i < 3; ++i)  // the flight ends at its last key, where the project was saved
     EXPECT_NEAR(again.state().at("eye")[i].get<double>(), eye[i].get<double>(), 1e-6);
   EXPECT_EQ(again.quit(), 0) << again.said();
 }
@@ -243,7 +244,7 @@ TEST_F(ViewerTools, ClicksThatComeFasterThanTheFramesAllCount) {
   EXPECT_EQ(hand.quit(), 0) << hand.said();
 }
 
-TEST_F(ViewerTools, OfADamagedStoreTheRestIsShownAndTheDamageIsSaid) {
+TEST_F(ViewerTools, ADamagedStoreIsShownWithoutTheDamageWhichIsReported) {
   const fs::path broken = file("broken.strata");
   fs::copy(store(), broken, fs::copy_options::recursive);
   std::string points = readWhole(broken / "points.bin");
@@ -252,7 +253,7 @@ TEST_F(ViewerTools, OfADamagedStoreTheRestIsShownAndTheDamageIsSaid) {
   const Image whole = pictureOf({store().string()}, "whole.png");
   const Image rest = pictureOf({broken.string()}, "rest.png");
   EXPECT_GT(pointPixels(rest), 2'000);
-  // The message stands at the lower edge.
+  // The message is shown at the lower edge.
   int different = 0;
   for (int y = kHeight - 90; y < kHeight - 24; ++y)
     for (int x = 450; x < 550; ++x) {

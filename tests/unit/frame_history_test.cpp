@@ -36,7 +36,7 @@ TEST(FrameHistory, TheDiskRateIsBytesOverTimeHoweverUnevenTheFramesAre) {
   EXPECT_EQ(history.latest(FrameHistory::Series::readBytesPerSecond), 0.0);
 }
 
-TEST(FrameHistory, TheHitRateIsThatOfTheLastWindowInWhichAnythingWasWanted) {
+TEST(FrameHistory, TheHitRateIsThatOfTheLastWindowInWhichNodesWereWanted) {
   FrameHistory history;
   FrameHistory::Clock::time_point now{};
   StreamerStats stats;

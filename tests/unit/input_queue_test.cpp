@@ -33,21 +33,21 @@ TEST(InputQueue, AClickWithinOneFrameIsSeenToGoDownAndUpWhereItWasMade) {
   EXPECT_EQ(frames[2][0].place, glm::dvec2(90.0, 90.0));
 }
 
-TEST(InputQueue, ADragWithinOneFrameGoesAllItsWayBeforeItIsLetGo) {
+TEST(InputQueue, ADragWithinOneFrameReachesItsEndBeforeItIsLetGo) {
   const auto frames = framesOf({cursor(5, 5), button(true), cursor(50, 5), cursor(90, 5), button(false)});
   ASSERT_EQ(frames.size(), 3u);
   EXPECT_EQ(frames[1].back().place, glm::dvec2(90.0, 5.0));
   EXPECT_EQ(frames[2][0].kind, Kind::button);
 }
 
-TEST(InputQueue, AKeyThatIsTappedIsSeenToGoDownAndAShortcutTakesOneFrameToDoSo) {
+TEST(InputQueue, ATappedKeyIsSeenToGoDownAndAShortcutGoesDownInOneFrame) {
   EXPECT_EQ(framesOf({key(1, true), key(1, false)}).size(), 2u);
   const auto frames = framesOf({key(9, true), key(1, true), key(1, false), key(9, false)});
   ASSERT_EQ(frames.size(), 2u);
   EXPECT_EQ(frames[0].size(), 2u);
 }
 
-TEST(InputQueue, EveryEventComesOnceInItsOrderAndNoFrameIsEmpty) {
+TEST(InputQueue, EveryEventComesOnceAndInOrderAndNoFrameIsEmpty) {
   std::mt19937 random(7);
   for (int round = 0; round < 200; ++round) {
     std::vector<InputEvent> events(random() % 30);
@@ -68,7 +68,7 @@ TEST(InputQueue, EveryEventComesOnceInItsOrderAndNoFrameIsEmpty) {
   }
 }
 
-TEST(InputQueue, TwoClicksAreADoubleClickHoweverSlowTheFramesAre) {
+TEST(InputQueue, TwoClicksAreADoubleClickEvenInSlowFrames) {
   const auto second = [](double after, double before, glm::dvec2 moved = {0.0, 0.0}) {
     InputQueue queue;
     queue.add(cursor(10, 10));
@@ -83,7 +83,7 @@ TEST(InputQueue, TwoClicksAreADoubleClickHoweverSlowTheFramesAre) {
     return all.back().doubleClick;
   };
   EXPECT_TRUE(second(0.0, 1.0));   // in the same frame
-  EXPECT_TRUE(second(1.0, 2.0));   // in the next, a second long
+  EXPECT_TRUE(second(1.0, 2.0));   // in the next frame, which lasts a second
   EXPECT_TRUE(second(1.2, 1.21));  // two fast frames
   EXPECT_FALSE(second(1.4, 1.41));
   EXPECT_FALSE(second(1.0, 1.1, {20.0, 0.0}));
