@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 using Names = std::set<std::string_view>;
 
-/// The rule of one wing: which other wings, and which libraries besides the standard one and GLM, it may include.
+/// The other wings, and the libraries besides the standard library and GLM, that one wing may include.
 struct WingRule {
   Names wings;
   Names libraries;
@@ -98,18 +98,19 @@ const std::map<std::string_view, WingRule> kRules{
       {"POSIX", "GL", "GLFW", "ImGui", "CLI11", "nlohmann"}}},
 };
 
-/// The files that join the wings around them.
+/// The files that join the wings around them, and are wings of their own.
 const Names kTops{"io/open_scans", "render/create_rasterizer", "converter/convert"};
 
-/// Libraries that stand in exactly one .cpp of ours.
+/// The libraries that only one source may include.
 const Names kInOneFile{"spdlog", "PNG", "OSMesa"};
-/// Core holds values: nothing of it starts a thread or waits for one. Only core/mutex.h names locks, for the others.
+/// Core holds values, and nothing in it starts a thread or waits for one. Only core/mutex.h names locks, for the
+/// others.
 const Names kNotInCore{"thread", "mutex",     "shared_mutex", "condition_variable",
                        "future", "semaphore", "latch",        "barrier"};
 
 constexpr int kMaxLines = 700;
 
-/// Beginnings of header names, the longer before the shorter ("GL/osmesa.h" before "GL/").
+/// Libraries by the beginnings of their headers' names. A longer one comes before a shorter one: "GL/osmesa", "GL/".
 const std::vector<std::pair<std::string_view, std::string_view>> kLibraries{
     {"glm/", "GLM"},     {"spdlog/", "spdlog"}, {"fmt/", "spdlog"},
     {"png.h", "PNG"},    {"laszip/", "LASzip"}, {"pcl/", "PCL"},
@@ -146,7 +147,7 @@ std::string_view ownerOf(std::string_view header) {
 
 bool isHeader(std::string_view file) { return file.ends_with(".h"); }
 
-/// Why `file` ("io/las/las_source.cpp") must not include `header`; empty when it may.
+/// The reason for which `file`, such as "io/las/las_source.cpp", must not include `header`; empty where it may.
 std::string objection(std::string_view file, std::string_view header) {
   const std::string_view wing = wingOf(file);
   if (wing == "unknown") return std::string(file) + ": lies in no wing that this test knows";
@@ -174,7 +175,7 @@ std::vector<std::string> includesOf(const fs::path& file) {
   return headers;
 }
 
-/// Paths from the root of the sources, sorted.
+/// The files in `folders` whose names end so, as sorted paths from the root of the sources.
 std::vector<std::string> filesIn(const std::vector<std::string_view>& folders, const Names& endings) {
   const fs::path root = test::sourceFolder();
   std::vector<std::string> files;
@@ -189,7 +190,7 @@ std::vector<std::string> filesIn(const std::vector<std::string_view>& folders, c
 const std::vector<std::string_view> kLayers{"core", "io", "lod", "render", "converter", "viewer"};
 const std::vector<std::string_view> kLayersAndTests{"core", "io", "lod", "render", "converter", "viewer", "tests"};
 
-/// Which modules of ours each module includes, by its header or its source.
+/// The modules that each module includes, in its header or its source.
 std::map<std::string, std::set<std::string>> moduleGraph() {
   std::map<std::string, std::set<std::string>> graph;
   for (const std::string& file : filesIn(kLayers, {".h", ".cpp"})) {
@@ -200,7 +201,7 @@ std::map<std::string, std::set<std::string>> moduleGraph() {
   return graph;
 }
 
-/// A way through `graph` that ends where it began, as "a -> b -> a"; empty where there is none.
+/// A circle in `graph`, as "a -> b -> a"; empty where there is none.
 std::string findCircle(const std::map<std::string, std::set<std::string>>& graph) {
   std::set<std::string> finished;
   std::vector<std::string> way;
@@ -350,7 +351,7 @@ TEST(Sources, NoFileIsLongerThanSevenHundredLines) {
   }
 }
 
-/// The text of the CMakeLists.txt nearest above `file`, and the file's path seen from there.
+/// The text of the nearest CMakeLists.txt at or above the folder of `file`, and the file's path from there.
 std::pair<std::string, std::string> nearestList(const fs::path& file) {
   fs::path folder = file.parent_path();
   while (!fs::exists(folder / "CMakeLists.txt")) folder = folder.parent_path();
@@ -358,7 +359,7 @@ std::pair<std::string, std::string> nearestList(const fs::path& file) {
   return {std::string(std::istreambuf_iterator<char>(in), {}), file.lexically_relative(folder).string()};
 }
 
-/// True when `list` names the file, or builds its name in a loop: `fuzz/${name}_fuzz.cpp` with `text` among the names.
+/// True when `list` names the file, or forms its name in a loop: `fuzz/${name}_fuzz.cpp` where `text` is a name.
 bool isListed(const std::string& list, const std::string& file) {
   if (list.find(file) != std::string::npos) return true;
   static const std::regex pattern(R"re(([\w/]*)\$\{name\}([\w.]*\.cpp))re");
