@@ -16,6 +16,9 @@ strata_packages=(
   libcli11-dev nlohmann-json3-dev libspdlog-dev libpng-dev
   libgtest-dev libbenchmark-dev xdotool xvfb xauth
 )
+# What .ci/checks.sh and the sanitizers need besides; neither demo.sh nor test.sh installs them.
+# shellcheck disable=SC2034  # for those who source this file
+strata_check_packages=(clang clang-format clang-tidy git)
 # Taken where the release has them: Mesa 25.1 dropped OSMesa.
 strata_optional_packages=(libosmesa6-dev)
 # The reference library of LAS and LAZ. Releases without it take these three, and nothing else, from Debian 13.
@@ -155,7 +158,8 @@ build_release() {
   local jobs
   jobs=$(build_jobs)
   say "configuring build/release"
-  (cd "$strata_root" && cmake --preset release --log-level=WARNING) || die "configuring failed"
+  # shellcheck disable=SC2086  # STRATA_CONFIGURE holds further arguments, as .ci/run sets them
+  (cd "$strata_root" && cmake --preset release --log-level=WARNING ${STRATA_CONFIGURE:-}) || die "configuring failed"
   say "building with $jobs jobs"
   cmake --build "$strata_root/build/release" -j "$jobs" --target "$@" || die "building failed"
 }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/version.h"
 #include "tests/support/paths.h"
 
 namespace strata {
@@ -222,6 +223,13 @@ TEST(Documents, NoLineIsWiderThan120ColumnsOutsideOfTablesAndCode) {
       if (!line.code && !line.table) {
         EXPECT_LE(columns(line.text), kMostColumns) << page << ":" << line.number;
       }
+}
+
+TEST(Documents, TheChangelogBeginsWithTheVersionThatIsBuilt) {
+  std::ifstream in(test::sourceFolder() / "CHANGELOG.md");
+  std::string line;
+  while (std::getline(in, line) && !line.starts_with("## ")) continue;
+  EXPECT_EQ(line.substr(0, line.find(" (")), "## " + version());
 }
 
 TEST(Documents, TheChecksSeeWhatIsWrong) {
