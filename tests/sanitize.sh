@@ -7,7 +7,7 @@
 #          not built with it, so the parallel loops of the converter and the rasterizers would give false alarms: they
 #          are left out.
 set -euo pipefail
-# shellcheck source=../.ci/packages.sh
+# shellcheck source=.ci/packages.sh
 . "$(dirname "${BASH_SOURCE[0]}")/../.ci/packages.sh"
 cd "$strata_root"
 
