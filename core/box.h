@@ -4,7 +4,7 @@
 
 namespace strata {
 
-/// Axis-aligned box in world coordinates (metres, the source's own frame). Empty when min > max.
+/// An axis-aligned box in world coordinates: metres, in the frame of the source. It is empty when min > max on an axis.
 struct Box {
   glm::dvec3 min{std::numeric_limits<double>::infinity()};
   glm::dvec3 max{-std::numeric_limits<double>::infinity()};
@@ -24,6 +24,8 @@ struct Box {
     min = glm::min(min, other.min);
     max = glm::max(max, other.max);
   }
+
+  bool operator==(const Box&) const = default;
 };
 
 }  // namespace strata

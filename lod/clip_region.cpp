@@ -6,7 +6,8 @@
 namespace strata {
 namespace {
 
-/// Points are drawn at the middle of a step of 10 bits, which is at most a 512th of half their box's side beside them.
+/// A share of a contour's size by which points may be drawn beside their place: at 10 bits they are drawn in the middle
+/// of a step, and half a step is at most a 512th of half the box's side. Twice that is allowed for.
 constexpr double kStep = 1.0 / 256.0;
 
 bool isApart(const Contour& contour, const glm::dvec3& extent, double slack, const Box& box) {

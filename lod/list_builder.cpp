@@ -176,9 +176,9 @@ void ListBuilder::draw(std::size_t i, bool wasMissing, Fade& fade, RenderList& l
 ListBuilder::Result ListBuilder::build(const Selection& selection, const SelectionOptions& options,
                                        const FailedNodes::ByNode& failed, Fade& fade, LodOutput& out) {
   const PointLayout& layout = store_.info().layout;
-  shown_ = options.shown;
+  shown_ = options.shown.colour;
   normals_ =
-      options.normals && (layout.find(attribute::kNormal) >= 0 || layout.find(attribute::kNormalOctahedral) >= 0);
+      options.shown.normals && (layout.find(attribute::kNormal) >= 0 || layout.find(attribute::kNormalOctahedral) >= 0);
   ++pass_;
   now_ = FailedNodes::Clock::now();
   drawn_.clear();

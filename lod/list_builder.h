@@ -99,7 +99,7 @@ class ListBuilder {
   NodeCache& cache_;
 
   // Used by the LOD thread.
-  std::optional<ColourMode> shown_;     ///< SelectionOptions::shown
+  std::optional<ColourMode> shown_;     ///< Shown::colour
   bool normals_ = false;                ///< normals are shown and the store has them
   double share_ = 1.0;                  ///< see learnShare()
   std::uint32_t pass_ = 0;              ///< counts from 1

@@ -65,7 +65,7 @@ bool Loader::isStillWanted(const LoadRequest& request) const {
   const LodTask task = state_.board.newest();
   const Contour contour = contourOf(state_.store->hierarchy().nodes[request.node]);
   const double reach = static_cast<double>(state_.index.reach[request.node]);
-  if (!mayBeLeftBy(task.selection.clip, contour, reach)) return false;
+  if (!mayBeLeftBy(task.selection.shown.clip, contour, reach)) return false;
   if (request.ahead && task.ahead && contourInView(contour, reach, ViewVolume(*task.ahead))) return true;
   if (!contourInView(contour, reach, ViewVolume(task.view))) return false;
   if (request.node == 0 || !task.selection.occlusion.enabled) return true;

@@ -50,7 +50,8 @@ LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fad
   TraceScope step(lane, "coarse depth");
   const CoarseDepth* const depth = fillCoarseDepth(task);
   step.next("select");
-  selectNodes(store_.hierarchy(), index_.reach, task.view, depth, task.selection, selection_);
+  const SelectionTree tree(store_.hierarchy(), index_.reach);
+  selectNodes(tree, task.view, depth, task.selection, selection_);
   failed.copyIfNewer(failures_, failuresVersion_);
   step.next("build the list");
   fade_.begin(task.selection.fadeSeconds, now);
@@ -61,7 +62,7 @@ LodPass::Result LodPass::run(const LodTask& task, const FailedNodes& failed, Fad
   out.pinned.list.view = task.view;
   if (task.ahead) {
     step.next("look ahead");
-    selectNodes(store_.hierarchy(), index_.reach, *task.ahead, nullptr, task.selection, selectionAhead_);
+    selectNodes(tree, *task.ahead, task.selection, selectionAhead_);
     builder_.lookAhead(selectionAhead_, failures_, out.requests);
   }
   return result;

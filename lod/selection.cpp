@@ -7,32 +7,28 @@
 #include <limits>
 #include <optional>
 
-#include "lod/contour.h"
+#include "lod/clip_region.h"
 
 namespace strata {
 namespace {
-
-/// Pixels that a node may span before 10 bits a coordinate are too coarse (Schütz 2022, 3.3). Coordinates span a power
-/// of two of grid steps, up to twice the points' own box, so a step is at most one pixel and the error half of that.
-constexpr double kPixelsAt10Bits = 500.0;
-constexpr double kPixelsAt20Bits = kPixelsAt10Bits * 1024.0;
 
 Precision precisionFor(double extentPx) {
   if (extentPx < kPixelsAt10Bits) return Precision::low10;
   return extentPx < kPixelsAt20Bits ? Precision::medium20 : Precision::full30;
 }
 
-/// Max-heap order; ties go to the lower index, so that the order does not hang on the heap's implementation.
+/// The order of the heap. The index decides between equal priorities, so that the result does not depend on how the
+/// standard library keeps heaps.
 bool lessUrgent(const Selection::Candidate& a, const Selection::Candidate& b) {
   if (a.selected.priority != b.selected.priority) return a.selected.priority < b.selected.priority;
   return a.selected.node > b.selected.node;
 }
 
-/// Points to draw of a node when `share` of the wanted density is to be reached; 0 = leave it out.
+/// How many points of a node to draw to reach `share` of the wanted density; 0 leaves the node out.
 std::uint32_t pointsAt(const Selection::Candidate& node, double share) {
   if (!node.root && share < 1.0 && !(share * static_cast<double>(node.selected.priority) > 1.0)) return 0;
   const double fraction = (share * node.wanted - node.given) * node.areaPerPoint;
-  // Written so that what is not a number counts as nothing.
+  // Written so that NaN counts as 0.
   const double points = (fraction > 0.0 ? std::min(fraction, 1.0) : 0.0) * node.pointCount;
   if (!node.root && node.leaf && points < 0.5) return 0;
   return std::min(std::max(static_cast<std::uint32_t>(points + 0.5), 1u), node.pointCount);
@@ -44,10 +40,11 @@ std::uint64_t pointsAt(std::span<const Selection::Candidate> nodes, double share
   return points;
 }
 
-/// The share of the wanted density, below `high`, that comes close to the budget without exceeding it.
+/// The share of the wanted density, below `high`, that comes close to the budget without exceeding it. The number of
+/// points grows with the share, so it is found by bisection, of the logarithm: shares may differ by many powers of ten.
 double shareWithin(std::span<const Selection::Candidate> nodes, std::uint64_t budget, double high) {
-  constexpr double kLeast = 1e-60;  // beside an eye within the node any less is one point
-  constexpr double kUnused = 1e-3;  // of the budget; what is left is spread by the caller
+  constexpr double kLeast = 1e-60;  // any smaller share leaves one point even of a node around the eye
+  constexpr double kUnused = 1e-3;  // share of the budget that may be left; the caller gives it out
   constexpr int kMostSteps = 40;
   double low = 0.5 * high;
   while (pointsAt(nodes, low) > budget) {
@@ -65,19 +62,20 @@ double shareWithin(std::span<const Selection::Candidate> nodes, std::uint64_t bu
   return low;
 }
 
+/// Looks at nodes for one view. The tests come in the order of their cost; occlusion, the dearest, comes last.
 class Walk {
  public:
-  Walk(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const CoarseDepth* depth,
-       const SelectionOptions& options)
-      : nodes_(hierarchy.nodes), reach_(reach), volume_(view), depth_(depth), options_(options) {}
+  Walk(const SelectionTree& tree, const View& view, const CoarseDepth* depth, const SelectionOptions& options)
+      : nodes_(tree.hierarchy.nodes), reach_(tree.reach), volume_(view), depth_(depth), options_(options) {}
 
-  /// The node as a candidate, if it is in view and its parents do not give all that is wanted there.
+  /// The node as a candidate, if it is in view and its ancestors do not give all that is wanted there.
   std::optional<Selection::Candidate> look(std::uint32_t node, double given, float parentPriority,
                                            std::vector<std::uint32_t>& hidden) const {
     const NodeRecord& record = nodes_[node];
     const Contour contour = contourOf(record);
     const double reach = reach_.empty() ? 0.0 : static_cast<double>(reach_[node]);
-    if (!contourInView(contour, reach, volume_) || !mayBeLeftBy(options_.clip, contour, reach)) return std::nullopt;
+    if (!contourInView(contour, reach, volume_) || !mayBeLeftBy(options_.shown.clip, contour, reach))
+      return std::nullopt;
 
     const ContourOnScreen screen = projectContour(contour, reach, volume_);
     const double wanted = options_.pointsPerPixel * screen.pixelsPerMetre * screen.pixelsPerMetre * screen.facing;
@@ -94,6 +92,7 @@ class Walk {
 
     SelectedNode& selected = candidate.selected;
     selected.node = node;
+    // Never more urgent than the parent, so that the heap gives parents first.
     selected.priority = isRoot ? parentPriority : std::min(parentPriority, static_cast<float>(wanted / given));
     selected.precision = precisionFor(screen.extentPx / volume_.cosHalfDiagonal);
     selected.pointCount = pointsAt(candidate, 1.0);
@@ -105,7 +104,7 @@ class Walk {
     return candidate;
   }
 
-  /// Pushes what is worth drawing below a node.
+  /// Pushes the children of a node that are worth drawing.
   void pushChildren(const Selection::Candidate& parent, Selection& out) const {
     const NodeRecord& record = nodes_[parent.selected.node];
     const std::size_t first = record.firstChild;
@@ -129,7 +128,8 @@ class Walk {
   const SelectionOptions& options_;
 };
 
-/// Fills the result from what was taken. When that `wanted` more than the budget, thinned by one share everywhere.
+/// Fills the result with the nodes taken. If all `wanted` points are more than the budget, every node is thinned by the
+/// same share, and the points that rounding leaves are given out to the most urgent nodes.
 void emit(std::uint64_t wanted, std::uint64_t budget, double highestShare, Selection& out) {
   out.budgetReached = wanted > budget;
   const double share = out.budgetReached ? shareWithin(out.taken, budget, highestShare) : 1.0;
@@ -171,8 +171,8 @@ double Selection::Candidate::density() const {
   return given + (areaPerPoint > 0.0 ? 1.0 / areaPerPoint : std::numeric_limits<double>::infinity());
 }
 
-void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view, const CoarseDepth* depth,
-                 const SelectionOptions& options, Selection& out) {
+void selectNodes(const SelectionTree& tree, const View& view, const CoarseDepth* depth, const SelectionOptions& options,
+                 Selection& out) {
   out.nodes.clear();
   out.heap.clear();
   out.taken.clear();
@@ -183,13 +183,13 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
   out.budgetReached = false;
   out.pointsPerPixel = options.pointsPerPixel;
   const std::uint64_t budget = std::min(options.pointBudget, SelectionOptions::kMaxPointBudget);
-  if (hierarchy.nodes.empty()) return;
+  if (tree.hierarchy.nodes.empty()) return;
   if (budget == 0) {
     out.budgetReached = true;
     return;
   }
 
-  const Walk walk(hierarchy, reach, view, depth, options);
+  const Walk walk(tree, view, depth, options);
   out.tested = 1;
   if (const auto root = walk.look(0, 0.0, std::numeric_limits<float>::max(), out.hidden)) out.heap.push_back(*root);
   double highestShare = 1.0;
@@ -200,7 +200,8 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
     const Selection::Candidate candidate = out.heap.back();
     out.heap.pop_back();
     if (wanted > budget && out.taken.size() >= nextCheck) {
-      // At this share neither the candidate nor anything that is still to come has a point.
+      // At this share neither the candidate nor any later one has a point. If those taken fill the budget at it, the
+      // walk can end. The check costs a pass over all of them, so it is made at each growth by an eighth.
       const double share = 1.0 / static_cast<double>(candidate.selected.priority);
       if (pointsAt(out.taken, share) >= budget) {
         highestShare = share;
@@ -216,13 +217,8 @@ void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const
   emit(wanted, budget, highestShare, out);
 }
 
-void selectNodes(const Hierarchy& hierarchy, std::span<const float> reach, const View& view,
-                 const SelectionOptions& options, Selection& out) {
-  selectNodes(hierarchy, reach, view, nullptr, options, out);
-}
-
-void selectNodes(const Hierarchy& hierarchy, const View& view, const SelectionOptions& options, Selection& out) {
-  selectNodes(hierarchy, {}, view, nullptr, options, out);
+void selectNodes(const SelectionTree& tree, const View& view, const SelectionOptions& options, Selection& out) {
+  selectNodes(tree, view, nullptr, options, out);
 }
 
 }  // namespace strata

@@ -17,8 +17,6 @@ bool gazeKeeps(const ViewConstants& constants, const Gaze& gaze, const NodeData&
 /// steps, and a 10-bit coordinate resolves a 1024th of a side.
 double projectedSizePx(const ViewConstants& constants, const NodeData& node, const Batch& batch);
 
-inline constexpr double kPixelsAt10Bits = 500.0;
-inline constexpr double kPixelsAt20Bits = 500.0 * 1024.0;
 /// The precision that a batch is drawn with: 10 bits below 500 pixels, 20 below 500 * 1024, else 30 (Schütz 2022, 3.3).
 /// Half a cell is then less than a quarter of a pixel. It never takes more planes than the node has loaded, nor more
 /// than the batch's bits fill.

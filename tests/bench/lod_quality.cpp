@@ -92,7 +92,7 @@ class LodPictures {
 
   /// Returns the number of points in the render list; drawn() counts those of them that passed culling.
   std::uint64_t select(const View& view, const SelectionOptions& options) {
-    selectNodes(store_.hierarchy(), index_.reach, view, options, selection_);
+    selectNodes({store_.hierarchy(), index_.reach}, view, options, selection_);
     list_ = {};
     list_.view = view;
     for (const SelectedNode& selected : selection_.nodes) {

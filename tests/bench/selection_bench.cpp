@@ -30,7 +30,7 @@ void selectFromTerrain(benchmark::State& state, double height, std::uint64_t bud
   for (auto _ : state) {
     view.eye.x += 0.01;
     view.target.x += 0.01;
-    selectNodes(terrain().hierarchy, index.reach, view, options, selection);
+    selectNodes({terrain().hierarchy, index.reach}, view, options, selection);
     benchmark::DoNotOptimize(selection.nodes.data());
   }
   state.counters["nodes"] = static_cast<double>(selection.nodes.size());
@@ -56,7 +56,7 @@ struct LoadedTown {
 
   void load(const View& view, const SelectionOptions& options) {
     Selection selection;
-    selectNodes(town.hierarchy, index.reach, view, options, selection);
+    selectNodes({town.hierarchy, index.reach}, view, options, selection);
     std::vector<NodeCache::Released> released;
     for (const SelectedNode& selected : selection.nodes)
       if (!cache.contains(selected.node)) cache.insert(selected.node, town.load(selected.node), released);

@@ -275,7 +275,7 @@ void planes(const std::string& store, const CameraPath& path) {
   std::printf("| read | MB, neighbours together | MB, each node alone |\n|---|---|---|\n");
   StreamerOptions full, need, shown;
   full.leastPrecision = Precision::full30;
-  shown.selection.shown = ColourMode::rgb;
+  shown.selection.shown.colour = ColourMode::rgb;
   const std::pair<const char*, StreamerOptions*> ways[] = {
       {"all planes", &full}, {"precision by need", &need}, {"and only the colour", &shown}};
   for (const auto& [name, options] : ways) {

@@ -58,9 +58,9 @@ TEST(SelectionClip, LeavesOutNothingThatIsSeenAtAnyPrecision) {
     for (const bool clipped : {false, true}) {
       SelectionOptions options;
       options.pointBudget = SelectionOptions::kMaxPointBudget;
-      if (clipped) options.clip = draw.clip;
+      if (clipped) options.shown.clip = draw.clip;
       Selection selection;
-      selectNodes(terrain.hierarchy, index.reach, view, options, selection);
+      selectNodes({terrain.hierarchy, index.reach}, view, options, selection);
       RenderList list;
       list.view = view;
       const std::size_t coarse = static_cast<std::size_t>(round % 2);
@@ -90,7 +90,7 @@ TEST(SelectionClip, SparesTheBudgetAndTheDiskWhatIsCutAway) {
   StreamerOptions options;
   Box box{cube.min, cube.max};
   box.max.x = cube.centre().x;
-  options.selection.clip.boxes.push_back(box);
+  options.selection.shown.clip.boxes.push_back(box);
   Streamer half(test::makeStore(terrain), options);
   Streamer whole(test::makeStore(terrain), {});
   for (Streamer* streamer : {&half, &whole}) {
@@ -101,7 +101,7 @@ TEST(SelectionClip, SparesTheBudgetAndTheDiskWhatIsCutAway) {
   EXPECT_LT(half.stats().nodesLoaded, whole.stats().nodesLoaded * 3 / 4);
   EXPECT_LT(half.beginFrame().pointCount, whole.beginFrame().pointCount * 3 / 4);
 
-  options.selection.clip = {};
+  options.selection.shown.clip = {};
   half.setSelection(options.selection);
   ASSERT_TRUE(half.waitUntilComplete(std::chrono::seconds{60}));
   EXPECT_EQ(half.beginFrame().items.size(), whole.beginFrame().items.size()) << "comes back when the box goes";

@@ -84,7 +84,7 @@ class ResidentTown {
  private:
   static std::unique_ptr<ByteSource> noBytes() { return std::make_unique<test::MemoryBytes>(std::vector<std::byte>{}); }
   void load(const LodTask& task, NodeCache& cache) {
-    selectNodes(town.hierarchy, index_.reach, task.view, task.selection, selection_);
+    selectNodes({town.hierarchy, index_.reach}, task.view, task.selection, selection_);
     std::vector<NodeCache::Released> released;
     for (const SelectedNode& selected : selection_.nodes) {
       if (cache.contains(selected.node)) continue;

@@ -94,7 +94,7 @@ Selection select(const Scan& scan, const View& view, const CoarseDepth* depth, d
   options.pointBudget = SelectionOptions::kMaxPointBudget;
   options.minimumPixels = 0.0;
   Selection selection;
-  selectNodes(scan.store->hierarchy(), {}, view, depth, options, selection);
+  selectNodes(scan.store->hierarchy(), view, depth, options, selection);
   return selection;
 }
 

@@ -133,7 +133,7 @@ TEST_F(Slices, AreSelectedOnlyWithWhatTheyContinue) {
     view.eye = glm::dvec3(50.0) + 60.0 * glm::dvec3(random() % 1000, random() % 1000, random() % 1000) / 1000.0;
     view.target = glm::dvec3(50.0, 50.001, 50.002);
     Selection selection;
-    selectNodes(store_.hierarchy(), index.reach, view, {}, selection);
+    selectNodes({store_.hierarchy(), index.reach}, view, {}, selection);
     std::vector<bool> chosen(store_.hierarchy().nodes.size());
     for (const SelectedNode& selected : selection.nodes) {
       const std::uint32_t parent = index.parent[selected.node];

@@ -239,7 +239,7 @@ TEST(Selection, FindsAPoleThatSticksOutOfTheGroundAboveIt) {
   EXPECT_TRUE(select(hierarchy, view).nodes.empty());
   const HierarchyIndex index = indexHierarchy(hierarchy);
   Selection selection;
-  selectNodes(hierarchy, index.reach, view, {}, selection);
+  selectNodes({hierarchy, index.reach}, view, {}, selection);
   ASSERT_EQ(selection.nodes.size(), 2u);
   EXPECT_EQ(selection.nodes[1].node, 1u);
 }

@@ -202,7 +202,7 @@ TEST(Streamer, ReadsOnlyTheRestOfANodeThatIsNeededInMoreDetail) {
 TEST(Streamer, ReadsOnlyWhatIsShownAndTheRestWhenThatChanges) {
   StreamerOptions options;
   options.together.bytes = 0;  // each node by itself
-  options.selection.shown = ColourMode::rgb;
+  options.selection.shown.colour = ColourMode::rgb;
   const auto store = makeStore(terrain());
   Streamer streamer(store, options);
   streamer.setView(lookDown());
@@ -216,7 +216,7 @@ TEST(Streamer, ReadsOnlyWhatIsShownAndTheRestWhenThatChanges) {
   }
   EXPECT_LT(colours, without);
 
-  options.selection.shown = ColourMode::intensity;
+  options.selection.shown.colour = ColourMode::intensity;
   streamer.setSelection(options.selection);
   ASSERT_TRUE(streamer.waitUntilComplete(kLong));
   for (const RenderItem& item : streamer.beginFrame().items) {
@@ -230,13 +230,13 @@ TEST(Streamer, ReadsNormalsWhereTheyAreAskedForAndThere) {
   for (const bool has : {false, true}) {
     const Terrain made = makeTerrain({.levels = 5, .cubeBits = 18, .normals = has}, true);
     StreamerOptions options;
-    options.selection.shown = ColourMode::rgb;
+    options.selection.shown.colour = ColourMode::rgb;
     Streamer streamer(makeStore(made), options);
     streamer.setView(viewOfTerrain(made.info, 0.5, 0.3, 60.0));
     ASSERT_TRUE(streamer.waitUntilComplete(kLong));
     for (const RenderItem& item : streamer.beginFrame().items) EXPECT_TRUE(item.node->normal.empty());
     const std::uint64_t without = streamer.stats().bytesRead;
-    options.selection.normals = true;
+    options.selection.shown.normals = true;
     streamer.setSelection(options.selection);
     ASSERT_TRUE(streamer.waitUntilComplete(kLong));
     for (const RenderItem& item : streamer.beginFrame().items) {

@@ -175,7 +175,7 @@ Flight flyOnce(const BenchOptions& options, const CameraPath& path, const std::s
                Rasterizer& rasterizer, PlayOptions play) {
   Flight flight;
   StreamerOptions streaming = options.streamer;
-  followDrawing(play.draw, streaming.selection);
+  streaming.selection.shown = shownBy(play.draw);
   if (options.trace) {
     flight.trace = std::make_unique<Trace>();
     play.lane = &flight.trace->addLane("render");
@@ -299,7 +299,7 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   applyDrawFlags(options.draw, draw);
   // A map of heights is read by its relief, which splats smooth away.
   if (options.draw.fill.empty()) draw.jumpFlood = draw.colour != ColourMode::elevation;
-  followDrawing(draw, rich.selection);
+  rich.selection.shown = shownBy(draw);
   Streamer streamer(store, rich);
   std::vector<ReportPicture> pictures;
   double farthest = 0.0;  // the overview stays where it is, each one after it nearer than the one before

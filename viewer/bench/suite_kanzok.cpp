@@ -61,7 +61,7 @@ Line flyViews(const std::string& path, const std::vector<View>& views, bool occl
   const auto rasterizer =
       createRasterizer(setup.backend(), room, setup.ours == "cpu" ? nullptr : createHeadlessContext());
   const DrawOptions draw = drawOptionsFor(store->info(), store->info().bounds, std::nullopt);
-  followDrawing(draw, options.selection);
+  options.selection.shown = shownBy(draw);
   Streamer streamer(store, options);
   Line line;
   Picture frame;

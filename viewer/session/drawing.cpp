@@ -66,20 +66,6 @@ DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::option
   return draw;
 }
 
-std::optional<ColourMode> shownBy(const DrawOptions& draw) {
-  const bool isLate = draw.colour == ColourMode::returnNumber || draw.colour == ColourMode::normal;
-  if (!draw.classes.all() && !isLate) return std::nullopt;  // these two stand behind the classes
-  return draw.colour;
-}
-
-bool followDrawing(const DrawOptions& draw, SelectionOptions& selection) {
-  const SelectionOptions before = selection;
-  selection.shown = shownBy(draw);
-  selection.normals = draw.jumpFlood;
-  selection.clip = draw.clip;
-  return !(selection == before);
-}
-
 std::unique_ptr<Rasterizer> createRasterizerFor(Backend backend, const std::optional<ProgressiveOptions>& progressive,
                                                 std::unique_ptr<GlContext> context) {
   if (progressive) return createProgressiveRasterizer(std::move(context), *progressive);

@@ -8,7 +8,6 @@
 #include "core/image.h"
 #include "core/picture.h"
 #include "io/store/store.h"
-#include "lod/selection.h"
 #include "render/create_rasterizer.h"
 #include "render/progressive/progressive_rasterizer.h"
 
@@ -24,13 +23,6 @@ ColourMode bestColour(const StoreInfo& info);
 
 /// Colour, intensity from the 1st to the 99th percentile, elevation over `bounds`.
 DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::optional<ColourMode> colour);
-
-/// SelectionOptions::shown for such a drawing: what it looks at of the points beside their positions. Nothing, that is
-/// all that is usual, where some classes are left out.
-std::optional<ColourMode> shownBy(const DrawOptions& draw);
-
-/// What is loaded follows from what is drawn: sets SelectionOptions::shown and clip. True when that changed them.
-bool followDrawing(const DrawOptions& draw, SelectionOptions& selection);
 
 /// The progressive rasterizer where there are options for it, else the one of `backend`; see createRasterizer() for
 /// `context` and errors.

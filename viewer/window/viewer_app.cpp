@@ -214,8 +214,7 @@ class ViewerApp {
       settings.backend = renderer_.backend();
     }
     // Not only this panel changes what is to be loaded: classes are hidden and clip boxes moved elsewhere.
-    if (followDrawing(settings.draw, settings.selection) || changed)
-      renderer_.layers().setSelection(settings.selection);
+    if (changed || shownBy(settings.draw) != settings.selection.shown) applySelection();
     return changed;
   }
 
@@ -280,7 +279,7 @@ class ViewerApp {
 
   /// What is loaded follows from what is drawn.
   void applySelection() {
-    followDrawing(session_.settings.draw, session_.settings.selection);
+    session_.settings.selection.shown = shownBy(session_.settings.draw);
     renderer_.layers().setSelection(session_.settings.selection);
   }
 
