@@ -13,22 +13,28 @@ namespace {
 
 constexpr int kCells = OccluderSet::kCells;
 constexpr std::size_t kCellCount = std::size_t{kCells} * kCells * kCells;
-constexpr float kLayer = 0.04f;         // half the thickness of a layer, in cells: 1 cm where a cell has 25
-constexpr int kLeastPart = 8;           // share of a cell's squares that a part of it has to have: an eighth
-constexpr std::size_t kMostSpread = 3;  // occluders of a cell that leave room for planes of the cells beside it
-constexpr std::size_t kMostParts = 2;   // of a plane in a cell
-constexpr float kLeastArea = 0.05f;     // of an occluder, in sides of a cell squared: slivers are not worth their time
+constexpr float kLayer = 0.04f;         // half the thickness of a layer in cells: 1 cm where a cell is 25 cm wide
+constexpr int kLeastPart = 8;           // a part of a cell has at least 1 / kLeastPart of its squares
+constexpr std::size_t kMostSpread = 3;  // a cell with so many surfaces tries none of its neighbours'
+constexpr std::size_t kMostParts = 2;   // parts of a surface in a cell that is not closed
+constexpr float kLeastArea = 0.05f;     // least area of an occluder in cell faces: slivers are not worth their time
 
-/// Places of points in their cells, and the cells.
-inline __attribute__((always_inline)) void placeBatch(const std::uint32_t* positions, std::size_t count,
-                                                      const glm::vec3& start, const glm::vec3& step, int cellsAlong,
+/// How a batch's leading 10 bits become places in the node's cube, in 1/1024 of a cell: start + step * coordinate.
+struct CubeFrame {
+  glm::vec3 start{0.0f}, step{0.0f};
+  int cellsAlong = 0;
+};
+
+/// Finds the cell of each point and its place in the cell. Points that rounding puts outside of the cube are moved in.
+inline __attribute__((always_inline)) void placeBatch(std::span<const std::uint32_t> positions, const CubeFrame& frame,
                                                       CellPoint* points, std::uint16_t* cells) {
-  const float last = static_cast<float>(1024 * cellsAlong - 1);
+  const glm::vec3 start = frame.start, step = frame.step;
+  const float last = static_cast<float>(1024 * frame.cellsAlong - 1);
   const auto place = [last](float from, float each, std::uint32_t coordinate) {
     const float at = from + each * static_cast<float>(static_cast<int>(coordinate));
     return static_cast<std::uint32_t>(static_cast<int>(std::min(std::max(at, 0.0f), last)));
   };
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < positions.size(); ++i) {
     const std::uint32_t p = positions[i];
     const std::uint32_t x = place(start.x, step.x, p & 1023), y = place(start.y, step.y, p >> 10 & 1023),
                         z = place(start.z, step.z, p >> 20);
@@ -36,37 +42,54 @@ inline __attribute__((always_inline)) void placeBatch(const std::uint32_t* posit
     cells[i] = static_cast<std::uint16_t>(((x >> 10) * kCells + (y >> 10)) * kCells + (z >> 10));
   }
 }
-void placeBatchPlain(const std::uint32_t* positions, std::size_t count, const glm::vec3& start, const glm::vec3& step,
-                     int cellsAlong, CellPoint* points, std::uint16_t* cells) {
-  placeBatch(positions, count, start, step, cellsAlong, points, cells);
+void placeBatchPlain(std::span<const std::uint32_t> positions, const CubeFrame& frame, CellPoint* points,
+                     std::uint16_t* cells) {
+  placeBatch(positions, frame, points, cells);
 }
-STRATA_TARGET_AVX2 void placeBatchAvx2(const std::uint32_t* positions, std::size_t count, const glm::vec3& start,
-                                       const glm::vec3& step, int cellsAlong, CellPoint* points, std::uint16_t* cells) {
-  placeBatch(positions, count, start, step, cellsAlong, points, cells);
+STRATA_TARGET_AVX2 void placeBatchAvx2(std::span<const std::uint32_t> positions, const CubeFrame& frame,
+                                       CellPoint* points, std::uint16_t* cells) {
+  placeBatch(positions, frame, points, cells);
 }
 
 /// The node's points sorted by cell.
 class PointsByCell {
  public:
   PointsByCell(const NodeData& node, const Box& cube, int cellsAlong) {
-    const double perMetre = 1024.0 * cellsAlong / cube.size().x;
     const std::size_t count = node.pointCount();
     std::vector<CellPoint> places(count);
     std::vector<std::uint16_t> cells(count);
     for (const Batch& batch : node.batches) {
-      glm::vec3 start, step;
-      for (glm::length_t axis = 0; axis < 3; ++axis) {
-        const double half = batch.bits[axis] > 10 ? 0.5 : 0.0;
-        const double metres = batch.boxSize[axis] / 1024.0;
-        step[axis] = static_cast<float>(metres * perMetre);
-        start[axis] =
-            static_cast<float>((node.origin[axis] + batch.boxMin[axis] - cube.min[axis] + half * metres) * perMetre);
-      }
-      const auto placeAll = hasAvx2() ? placeBatchAvx2 : placeBatchPlain;
-      placeAll(node.position[0].data() + batch.firstPoint, batch.pointCount, start, step, cellsAlong,
-               places.data() + batch.firstPoint, cells.data() + batch.firstPoint);
+      const CubeFrame frame = frameOf(node, batch, cube, cellsAlong);
+      const auto place = hasAvx2() ? placeBatchAvx2 : placeBatchPlain;
+      place({node.position[0].data() + batch.firstPoint, batch.pointCount}, frame, places.data() + batch.firstPoint,
+            cells.data() + batch.firstPoint);
     }
-    // Both halves at once, each with counters of its own: points of one cell follow each other, and would wait.
+    sort(places, cells);
+  }
+
+  std::span<const CellPoint> of(std::size_t cell) const {
+    return {points_.data() + start_[cell], points_.data() + start_[cell + 1]};
+  }
+
+ private:
+  static CubeFrame frameOf(const NodeData& node, const Batch& batch, const Box& cube, int cellsAlong) {
+    const double perMetre = 1024.0 * cellsAlong / cube.size().x;
+    CubeFrame frame;
+    frame.cellsAlong = cellsAlong;
+    for (glm::length_t axis = 0; axis < 3; ++axis) {
+      const double half = batch.bits[axis] > 10 ? 0.5 : 0.0;  // as in NodeData's formula for one plane
+      const double metres = batch.boxSize[axis] / 1024.0;
+      frame.step[axis] = static_cast<float>(metres * perMetre);
+      frame.start[axis] =
+          static_cast<float>((node.origin[axis] + batch.boxMin[axis] - cube.min[axis] + half * metres) * perMetre);
+    }
+    return frame;
+  }
+
+  /// A counting sort. It goes through the first and the second half of the points at once, each with its own counters:
+  /// consecutive points often fall into one cell, and would wait for each other at its counter.
+  void sort(const std::vector<CellPoint>& places, const std::vector<std::uint16_t>& cells) {
+    const std::size_t count = places.size();
     const std::size_t half = count / 2;
     std::array<std::uint32_t, kCellCount> first{}, second{};
     for (std::size_t i = 0; i < half; ++i) {
@@ -76,7 +99,7 @@ class PointsByCell {
     if (count % 2 != 0) ++second[cells[count - 1]];
     for (std::size_t cell = 0; cell < kCellCount; ++cell) {
       start_[cell + 1] = start_[cell] + first[cell] + second[cell];
-      second[cell] = start_[cell] + first[cell];
+      second[cell] = start_[cell] + first[cell];  // from now on the place of the next point
       first[cell] = start_[cell];
     }
     points_.resize(count);
@@ -87,17 +110,12 @@ class PointsByCell {
     if (count % 2 != 0) points_[second[cells[count - 1]]] = places[count - 1];
   }
 
-  std::span<const CellPoint> of(std::size_t cell) const {
-    return {points_.data() + start_[cell], points_.data() + start_[cell + 1]};
-  }
-
- private:
   std::array<std::uint32_t, kCellCount + 1> start_{};
   std::vector<CellPoint> points_;
 };
 
-/// The part of the plane inside the cell: a part of the cell's square lifted to the plane, clipped at the cell's top
-/// and bottom. Coordinates as in CellSurface.
+/// The part of the surface inside the cell: a rectangle of the cell's face lifted to the surface, then clipped at the
+/// cell's top and bottom (Sutherland, Hodgman 1974). Coordinates as in CellSurface.
 void clipToCell(const CellSurface& surface, const SquareRectangle& part, int grid, Occluder& out) {
   std::array<glm::vec3, 8> polygon, clipped;
   std::size_t count = 4;
@@ -133,7 +151,8 @@ float areaOf(const Occluder& occluder) {
   return 0.5f * glm::length(twice);
 }
 
-/// So many that those which a surface crosses have about a hundred points: three sides of the cube have 3 n² of them.
+/// As many cells along an axis as leave a hundred points, roughly, for each cell that a surface crosses: three sides of
+/// the cube cross 3 n² cells.
 int cellsFor(std::uint32_t points) {
   int cells = kCells;
   while (cells > 4 && points < 80u * 3u * static_cast<std::uint32_t>(cells * cells)) cells /= 2;
@@ -149,7 +168,7 @@ glm::ivec3 cellAt(std::size_t cell) {
           static_cast<int>(cell % kCells)};
 }
 
-/// Finds the closed planes of a node's cells.
+/// Finds the closed surfaces in a node's cells.
 class Finder {
  public:
   Finder(const NodeData& node, const Box& cube, int cellsAlong, float layer)
@@ -159,8 +178,8 @@ class Finder {
     std::size_t cell = 0;
     CellSurface surface;
     int grid = 0;
-    SquareRectangle part;    ///< of the grid; beyond it where cells beside it were joined
-    std::uint32_t seed = 0;  ///< the first in found_ that has this very plane
+    SquareRectangle part;    ///< closed squares of the grid; beyond it when cells beside it were joined
+    std::uint32_t seed = 0;  ///< the position in found_ of the surface that this one continues, or its own
   };
 
   std::vector<Found> find() {
@@ -182,8 +201,9 @@ class Finder {
     return std::abs(surface.offset) < 0.5f * (steep.x + steep.y + steep.z);
   }
 
-  /// Where a wall meets the floor or has something before it, the points of a cell lie in no one plane; that of the
-  /// cell beside it is tried then. What is found goes on to the next cell, so that a wall has one plane in all of them.
+  /// Tries each surface in the cells beside its own. Where a wall meets the floor, or something stands before it, the
+  /// points of a cell do not lie in one plane, but the wall's is known from the cell beside. A surface that is found
+  /// spreads further, so that a wall is one plane in all its cells.
   void spread(std::size_t first) {
     for (std::size_t i = first; i < found_.size() && found_.size() < OccluderSet::kMost; ++i) {
       const glm::ivec3 cell = cellAt(found_[i].cell);
@@ -200,14 +220,14 @@ class Finder {
     }
   }
 
-  /// True when the cell has a plane that is closed all over it: there is no need to look for its own.
+  /// True when a surface that is closed all over the cell has spread into it, so there is no need to fit one.
   bool isCovered(std::size_t cell) const {
     for (std::uint32_t at = first_[cell]; at != 0; at = next_[at - 1])
       if (found_[at - 1].part.area() == found_[at - 1].grid * found_[at - 1].grid) return true;
     return false;
   }
 
-  /// True when the cell has a plane so like this one that a second would tell nothing new, or enough of them.
+  /// True when the cell has enough surfaces, or one so like this that a second would tell nothing new.
   bool isKnown(std::size_t cell, const CellSurface& surface) const {
     std::size_t known = 0;
     for (std::uint32_t at = first_[cell]; at != 0; at = next_[at - 1]) {
@@ -234,8 +254,8 @@ class Finder {
       if (addParts(cell, surface, squares, seed)) return;
   }
 
-  /// Where a door, a window or something that stands before a wall leaves the cell open, the largest rectangles that
-  /// are not. False where they are too small to be worth their time.
+  /// Adds the largest closed rectangles of a cell that a door, a window or something before the wall leaves open. False
+  /// when they are too small to be worth their time.
   bool addParts(std::size_t cell, const CellSurface& surface, const ClosedSquares& squares, std::uint32_t seed) {
     const int least = squares.side * squares.side / kLeastPart;
     if (squares.held < least) return false;
@@ -262,23 +282,24 @@ class Finder {
 
   const PointsByCell points_;
   const int cellsAlong_;
-  const float layer_;  ///< half its thickness, in sides of a cell
+  const float layer_;  ///< half the thickness of a layer in cells
   std::vector<Found> found_;
-  // The planes of a cell: a list through found_, by position + 1.
+  // The surfaces of a cell as a linked list through found_, by position + 1; 0 ends it.
   std::array<std::uint32_t, kCellCount> first_{};
   std::vector<std::uint32_t> next_;
 };
 
-/// The octant of the node's cube that a cell is in.
+/// The octant of the node's cube that the cell lies in, as in NodeKey.
 int octantOf(const glm::ivec3& cell, int cellsAlong) {
   const int half = cellsAlong / 2;
   return (cell.x >= half ? 4 : 0) + (cell.y >= half ? 2 : 0) + (cell.z >= half ? 1 : 0);
 }
 
-/// Joins whole cells that lie side by side in one plane into rectangles, in place. A surface of 8 x 8 cells becomes one
-/// occluder, where all of it is as closed and goes on below as one.
+/// Joins wholly closed cells that lie side by side in one plane into rectangles, in place, so that a wall of 8 x 8
+/// cells becomes one occluder. It is as coarse as its coarsest cell. Cells with points below them are not joined with
+/// cells without. A rectangle grows along u first, then by whole rows along v.
 void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t childMask) {
-  // Those of each cell in order: a list through `found`, by position + 1.
+  // The surfaces of each cell in order, as a linked list through `found`, by position + 1.
   std::array<std::uint32_t, kCellCount> firstOf{};
   std::vector<std::uint32_t> nextOf(found.size());
   for (std::size_t i = found.size(); i-- > 0;)
@@ -292,7 +313,7 @@ void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t c
     if (joined[i] || !isWhole(first)) continue;
     const glm::ivec3 at = cellAt(first.cell);
     const auto u = static_cast<glm::length_t>(first.surface.u), v = static_cast<glm::length_t>(first.surface.v);
-    /// The other that continues this one so many cells along u and v; found.size() if there is none.
+    // The surface that continues this one so many cells along u and v; found.size() if there is none.
     const auto other = [&](int alongU, int alongV) {
       glm::ivec3 cell = at;
       cell[u] += alongU;
@@ -346,7 +367,7 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
   const double side = cube.size().x / cellsAlong;
   out.cellSide = side;
   if (!(side > 0.0) || node.pointCount() < OccluderSet::kLeastPoints) return;
-  double coarseness = 0.0;  // of the positions used, in cells
+  double coarseness = 0.0;  // half a step of the positions used, in cells
   for (const Batch& batch : node.batches)
     for (glm::length_t axis = 0; axis < 3; ++axis)
       if (batch.bits[axis] > 10) coarseness = std::max(coarseness, batch.boxSize[axis] / 2048.0 / side);

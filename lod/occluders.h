@@ -11,7 +11,7 @@
 
 namespace strata {
 
-/// A closed piece of a flat surface: the part of a plane that lies inside one of a node's cells.
+/// A closed piece of a flat surface inside one of a node's cells, or inside several side by side.
 struct Occluder {
   static constexpr std::size_t kMaxCorners = 6;
 
@@ -19,32 +19,32 @@ struct Occluder {
   std::uint32_t corners = 0;
   glm::vec3 normal{0.0f};
   float offset = 0.0f;  ///< dot(normal, corner)
-  float back = 0.0f;    ///< metres from the plane to the far side of its points, with a margin of half a gap
-  float gap = 0.0f;     ///< every square of this side on the surface holds a point, metres
-  bool whole = false;   ///< no node below has points here, so the gaps are known to be those of the scan
+  float back = 0.0f;    ///< metres from the surface to the far side of its points, and half a gap more
+  float gap = 0.0f;     ///< metres: every square with this side on the surface holds a point
+  bool whole = false;   ///< no node below has points here, so no later point can show a hole
 };
 
-/// What of a node hides things behind it, found from its points when it is loaded.
+/// The occluders of a node, found in its points when it is loaded.
 struct OccluderSet {
-  static constexpr int kCells = 8;                   ///< of a node's cube, along each axis; 4 where it has few points
-  static constexpr std::uint32_t kLeastPoints = 16;  ///< of a cell that is looked at; no occluder has fewer
-  static constexpr std::size_t kMost = 512;          ///< occluders of a node
-  /// Occluders of a node with so many points; what is found beyond is left out.
+  static constexpr int kCells = 8;  ///< cells along each axis of a node's cube; 4 for a node of few points
+  static constexpr std::uint32_t kLeastPoints = 16;  ///< a cell with fewer points is not looked at
+  static constexpr std::size_t kMost = 512;          ///< most occluders of a node
+  /// The most occluders of a node with so many points; others are left out.
   static std::size_t mostOf(std::uint64_t points) { return std::min<std::uint64_t>(kMost, points / 32); }
 
-  glm::dvec3 origin{0.0};  ///< world: the middle of the node's cube
+  glm::dvec3 origin{0.0};  ///< the middle of the node's cube in world coordinates
   double cellSide = 0.0;   ///< metres
   std::vector<Occluder> occluders;
 };
 
-/// A contour is a bound, and what is inside it may be full of holes: a facade has windows, a room's box is empty. So
-/// occluders are not contours (as in Kanzok 2015, 3.2.2) but pieces of them that are known to be covered: the node's
-/// cube is cut into 8 x 8 x 8 cells (fewer for few points); a plane is fitted to the points of each (smallest principal
-/// axis); the cell's side that faces the plane most is cut into 16 x 16 squares, and where every square that the plane
-/// crosses inside the cell holds a point near the plane (else every one of 8 x 8 or 4 x 4), the plane's part in the
-/// cell is an occluder. Pieces of one wall in neighbouring cells share their edges.
+/// Finds pieces of surface that are known to have no hole. A contour does not do (as in Kanzok 2015, 3.2.2): it is only
+/// a bound, a facade has windows, and a room is empty inside. So the node's cube is cut into 8 x 8 x 8 cells, fewer for
+/// few points. A plane is fitted to the points of each cell, across their smallest principal axis. The face of the cell
+/// that the plane faces most is cut into 16 x 16 squares. When every square that the plane crosses inside the cell
+/// holds a point near the plane, the plane's part in the cell is an occluder; else 8 x 8 and 4 x 4 squares are tried.
+/// Pieces of one wall in neighbouring cells share their edges.
 ///
-/// `cube` is the node's, `childMask` that of its record. Uses the leading 10 bits of the positions. `out` is replaced.
+/// `cube` is the node's cube and `childMask` its record's. Uses the leading 10 bits of the positions. Replaces `out`.
 void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask, OccluderSet& out);
 
 }  // namespace strata
