@@ -4,9 +4,8 @@
 
 namespace strata {
 
-/// The one exception type. Thrown in construction and I/O; selection, cache, queue and draw never throw.
-/// what() is the whole line a user reads after "error: ", in the form
-/// `FILE: what is wrong, found X (expected Y)`.
+/// The one exception type. Construction and I/O throw it; selection, cache, queue and draw never throw. what() is the
+/// whole line that a user reads after "error: ", in the form `FILE: what is wrong, found X (expected Y)`.
 class Error : public std::runtime_error {
  public:
   explicit Error(const std::string& message) : std::runtime_error(message) {}
@@ -19,7 +18,7 @@ class UsageError : public Error {
   using Error::Error;
 };
 
-/// `FILE: opening: No such file or directory` from errno, the only place where errno becomes text.
+/// Makes `FILE: opening: No such file or directory` out of errno. This is the only place where errno becomes text.
 Error posixError(const std::string& file, const std::string& doing, int errnoValue);
 
 }  // namespace strata

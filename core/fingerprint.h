@@ -5,7 +5,8 @@
 
 namespace strata {
 
-/// Tells whether a set of values has changed, by its FNV-1a hash of 64 bits. It guards against accidents, not attacks.
+/// The FNV-1a hash of a sequence of values, in 64 bits, which tells whether they have changed. It guards against
+/// accidents, not attacks.
 class Fingerprint {
  public:
   /// Adds the bytes of a plain value without padding.

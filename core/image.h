@@ -6,30 +6,30 @@
 
 namespace strata {
 
-/// 8-bit RGBA, row 0 on top, R | G<<8 | B<<16 | A<<24.
+/// Colours alone, 8-bit RGBA as R | G<<8 | B<<16 | A<<24, row 0 on top.
 struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint32_t> pixels;
 };
 
-/// Throws Error when the file cannot be written whole.
+/// Writes the image as a PNG file. Throws Error when the file cannot be written whole.
 void writePng(const std::string& path, const Image& image);
 
-/// A PNG written from the top down, so that a picture of any size takes the memory of a few rows. The file stands
-/// beside its final name until it is whole.
+/// Writes a PNG from the top down, so that a picture of any size takes the memory of a few rows. The file has another
+/// name beside the final one until it is whole.
 class PngWriter {
  public:
-  /// Throws Error when the file cannot be made.
+  /// Creates the file. Throws Error when that fails.
   PngWriter(const std::string& path, int width, int height);
-  /// Removes a file that is not finished.
+  /// Removes the file if it is not finished.
   ~PngWriter();
   PngWriter(const PngWriter&) = delete;
   PngWriter& operator=(const PngWriter&) = delete;
 
-  /// `rows` rows of `width` pixels. Throws Error when they cannot be written.
+  /// Writes the next `rows` rows of `width` pixels. Throws Error when that fails.
   void add(const std::uint32_t* pixels, int rows);
-  /// After the last row. Throws Error when the file cannot be written whole.
+  /// Call it after the last row: gives the file its name. Throws Error when the file cannot be written whole.
   void finish();
 
  private:
@@ -37,9 +37,9 @@ class PngWriter {
   std::unique_ptr<File> file_;
 };
 
-/// The bytes of the PNG file, for embedding in a report.
+/// Returns the bytes of the PNG file, for embedding in a report.
 std::vector<std::uint8_t> encodePng(const Image& image);
-/// Throws Error when the file is missing or is no 8-bit PNG.
+/// Throws Error when the file is missing or is not an 8-bit PNG.
 Image readPng(const std::string& path);
 
 }  // namespace strata

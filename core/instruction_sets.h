@@ -1,11 +1,12 @@
 #pragma once
 
-/// Functions compiled a second time for processors that have more than the plain instruction set.
+/// Attributes for functions that are compiled a second time, for processors with more than the plain instruction set, and
+/// tests of the processor that choose between the two.
 
 #if defined(__x86_64__)
-/// Shifts by any register, deposits of bits (BMI 2); counts of leading zeros.
+/// BMI 2: shifts by any register, deposits of bits; also counts of leading zeros.
 #define STRATA_TARGET_BMI2 __attribute__((target("bmi,bmi2,lzcnt")))
-/// Vectors of 32 bytes (no fused multiply-add: results are those of the plain set).
+/// AVX 2: vectors of 32 bytes. Without fused multiply-add, so results equal those of the plain set.
 #define STRATA_TARGET_AVX2 __attribute__((target("avx2")))
 #else
 #define STRATA_TARGET_BMI2
@@ -14,7 +15,7 @@
 
 namespace strata {
 
-/// Whether what is compiled for STRATA_TARGET_BMI2 runs here, and fast: the first two Zens take long over deposits.
+/// True when functions for STRATA_TARGET_BMI2 run here, and run fast: the first two Zens take long over deposits.
 inline bool hasBmi2() {
 #if defined(__x86_64__)
   static const bool has =
@@ -25,7 +26,7 @@ inline bool hasBmi2() {
 #endif
 }
 
-/// Whether what is compiled for STRATA_TARGET_AVX2 runs here.
+/// True when functions for STRATA_TARGET_AVX2 run here.
 inline bool hasAvx2() {
 #if defined(__x86_64__)
   static const bool has = __builtin_cpu_supports("avx2") != 0;
@@ -35,7 +36,7 @@ inline bool hasAvx2() {
 #endif
 }
 
-/// `fields`' lowest bits go, in order, to where `places` has bits.
+/// Moves the lowest bits of `fields`, in order, to the places where `places` has bits.
 STRATA_TARGET_BMI2 inline unsigned depositBits(unsigned fields, unsigned places) {
 #if defined(__x86_64__)
   return __builtin_ia32_pdep_si(fields, places);

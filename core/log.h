@@ -3,11 +3,11 @@
 
 namespace strata {
 
-/// Lines on stderr for the person at the terminal. Thread-safe.
+/// Write a line to stderr for the person at the terminal. Thread-safe.
 void logInfo(const std::string& message);
 void logWarning(const std::string& message);
 
-/// Keeps info lines back (warnings still appear).
+/// Keeps info lines back; warnings still appear.
 void setQuiet(bool quiet);
 
 }  // namespace strata

@@ -3,7 +3,7 @@
 
 namespace strata {
 
-/// Spreads the low 21 bits so that two zero bits follow each.
+/// Spreads the low 21 bits so that two zero bits lie above each.
 constexpr std::uint64_t spreadBits(std::uint64_t v) {
   v &= 0x1fffff;
   v = (v | v << 32) & 0x001f00000000ffff;
@@ -14,7 +14,7 @@ constexpr std::uint64_t spreadBits(std::uint64_t v) {
   return v;
 }
 
-/// Morton code of three 21-bit integers, x in the highest bit of each triple as in NodeKey.
+/// The Morton code of three 21-bit integers, with x in the highest bit of each triple as in NodeKey.
 constexpr std::uint64_t mortonCode(std::uint64_t x, std::uint64_t y, std::uint64_t z) {
   return spreadBits(x) << 2 | spreadBits(y) << 1 | spreadBits(z);
 }

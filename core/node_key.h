@@ -8,8 +8,9 @@
 
 namespace strata {
 
-/// Address of an octree node: a 1 bit, then 3 bits a level. The root is 1, the deepest level 20.
-/// An octant is x*4 + y*2 + z, each 1 in the upper half. Text form: `r`, then one digit a level, as in `r0427`.
+/// The address of a cell of the octree: a 1 bit, then 3 bits for each level; the root is 1. The bits of a level are the
+/// octant x*4 + y*2 + z, where each of x, y and z is 1 in the upper half. As text: `r`, then a digit for each level, as
+/// in `r0427`.
 struct NodeKey {
   static constexpr int kDeepestLevel = 20;
 
@@ -20,17 +21,17 @@ struct NodeKey {
   bool isRoot() const { return code == 1; }
   NodeKey child(int octantIndex) const { return {code << 3 | static_cast<std::uint64_t>(octantIndex)}; }
   NodeKey parent() const { return {code >> 3}; }
-  /// True for the key itself too.
+  /// True for the key itself as well.
   bool isAncestorOf(NodeKey other) const;
 
   std::string text() const;
-  /// Throws Error when `text` is not the text form of a key.
+  /// The reverse of text(). Throws Error when `text` is not a key.
   static NodeKey parse(std::string_view text);
 
   auto operator<=>(const NodeKey&) const = default;
 };
 
-/// The cube of `key` inside the root cube.
+/// The cube of the cell `key`, inside the cube of the root.
 Box nodeCube(NodeKey key, const Box& rootCube);
 
 }  // namespace strata

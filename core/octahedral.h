@@ -6,8 +6,8 @@
 
 namespace strata {
 
-/// A unit vector in two bytes: folded from the octahedron onto a square (Meyer et al. 2010, "On floating-point normal
-/// vectors"), each axis of it in 255 steps, 127 being zero. At most 1 degree is lost; the six axes are exact.
+/// A unit vector in two bytes: the octahedron is unfolded onto a square (Meyer et al. 2010, "On floating-point normal
+/// vectors"), whose axes have 255 steps each, with zero at 127. The error is at most 1 degree; the six axes are exact.
 using Octahedral = std::array<std::uint8_t, 2>;
 
 inline glm::vec3 decodeOctahedral(Octahedral code) {
@@ -21,7 +21,7 @@ inline glm::vec3 decodeOctahedral(Octahedral code) {
   return glm::normalize(n);
 }
 
-/// `normal` has any length above 0. Of the four codes around the mapped point the one that decodes nearest is taken.
+/// Encodes a vector of any length above 0: takes the one of the four codes around the mapped point that decodes nearest.
 inline Octahedral encodeOctahedral(const glm::dvec3& normal) {
   const glm::dvec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   glm::dvec2 square(n);

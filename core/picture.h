@@ -4,15 +4,15 @@
 
 namespace strata {
 
-/// A finished picture. Row 0 is the top.
+/// A finished picture; row 0 is the top. Each vector has width * height entries, row by row.
 struct Picture {
   static constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
   int width = 0;
   int height = 0;
   std::vector<std::uint32_t> colour;   ///< R | G<<8 | B<<16 | 255<<24
-  std::vector<float> depth;            ///< metres along the view direction; +inf where nothing was drawn
-  std::vector<std::uint32_t> pointId;  ///< see RenderList; kNoPoint where nothing was drawn
+  std::vector<float> depth;            ///< metres along the view direction; +inf for pixels without a point
+  std::vector<std::uint32_t> pointId;  ///< ids as RenderList counts them; kNoPoint for pixels without a point
 };
 
 }  // namespace strata

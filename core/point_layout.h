@@ -9,21 +9,21 @@
 
 namespace strata {
 
-/// One named column of the points besides the position.
+/// A named value of every point besides its position.
 struct Attribute {
-  std::string name;  ///< one of namespace attribute, or `extra:NAME` for a source's own
+  std::string name;  ///< a name from namespace attribute, or `extra:NAME` for an attribute of the source
   ScalarType type = ScalarType::u8;
   std::uint16_t components = 1;
-  std::string description;  ///< as found in the source, may be empty
-  double scale = 1.0;       ///< of extra bytes: value = stored * scale + offset
+  std::string description;  ///< as the source gives it; may be empty
+  double scale = 1.0;       ///< for extra bytes: value = stored * scale + offset
   double offset = 0.0;
 
   std::size_t bytes() const { return scalarBytes(type) * components; }
-  /// Made by Strata for drawing; no part of the scan.
+  /// True for attributes that Strata made for drawing; they are no part of the scan.
   bool isInternal() const { return name.starts_with("strata:"); }
 };
 
-/// Names and types every part of Strata knows. All values are kept as the source has them.
+/// The names and types that every part of Strata knows. All values are kept as the source has them.
 namespace attribute {
 inline constexpr std::string_view kRgb = "rgb";                        // u16 x 3
 inline constexpr std::string_view kNir = "nir";                        // u16
@@ -45,7 +45,7 @@ inline constexpr std::string_view kColourShift = "strata:colour_shift";     // u
 // in it: the point's own StoreInfo::colourShift. Ours, not the sources': exports leave it out
 }  // namespace attribute
 
-/// The attributes of a cloud and where each stands in a packed record (no padding, no position).
+/// The attributes of a cloud and the place of each in an attribute record, which has no padding and no position.
 class PointLayout {
  public:
   PointLayout() = default;
@@ -53,7 +53,7 @@ class PointLayout {
 
   const std::vector<Attribute>& attributes() const { return attributes_; }
   std::size_t offset(std::size_t index) const { return offsets_[index]; }
-  /// Bytes of one record.
+  /// Bytes of one attribute record.
   std::size_t stride() const { return stride_; }
   /// Index of the attribute with this name, or -1.
   int find(std::string_view name) const;

@@ -13,8 +13,8 @@ constexpr std::uint64_t mix64(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Random number `index` of the SplitMix64 sequence whose state begins at 0, so that any of them can be had without
-/// the ones before it.
+/// The first number of the SplitMix64 sequence whose state begins at `index`. Neighbouring indices give independent
+/// numbers, so that any of them can be had without the ones before it.
 constexpr std::uint64_t splitMix64(std::uint64_t index) { return mix64(index + kSplitMixStep); }
 
 /// The upper 53 bits of `bits` as a number in [0, 1).

@@ -6,7 +6,7 @@
 namespace strata {
 namespace {
 
-/// Three significant digits, or all of those before the point.
+/// Three significant digits, or more when that many stand before the point.
 std::string threeDigits(double value) {
   const double size = std::abs(value);
   char text[48];

@@ -3,11 +3,11 @@
 
 namespace strata {
 
-/// "950", "12.3 k", "4.56 M", "1.20 G": three digits that a person reads.
+/// A count for people, with three digits: "950", "12.3 k", "4.56 M", "1.20 G".
 std::string readableCount(double value);
-/// "12.3 MB" in powers of 1000.
+/// A number of bytes with three digits, in powers of 1000: "12.3 MB".
 std::string readableBytes(double bytes);
-/// "8.31 ms", "2.40 s".
+/// A time with three digits: "8.31 ms", "2.40 s".
 std::string readableMs(double ms);
 
 }  // namespace strata

@@ -11,10 +11,10 @@
 namespace strata {
 namespace {
 
-/// Sums over points: x y z, xx yy zz xy xz yz.
+/// Sums over points of x, y, z, xx, yy, zz, xy, xz, yz.
 using Moments = std::array<std::uint64_t, 9>;
 
-/// A few points at a time, whose sums fit 32 bits.
+/// Adds a few points at a time, whose sums fit 32 bits: a vector register holds twice as many of those.
 inline __attribute__((always_inline)) void addMoments(std::span<const CellPoint> points, Moments& moments) {
   constexpr std::size_t kAtOnce = 2048;
   for (; !points.empty(); points = points.subspan(std::min(points.size(), kAtOnce))) {
@@ -35,10 +35,11 @@ STRATA_TARGET_AVX2 void addMomentsAvx2(std::span<const CellPoint> points, Moment
 }
 
 constexpr std::size_t kSquares = std::size_t{kCellGrid} * kCellGrid;
-/// A byte for each square of the finest grid, and one for all points that are in none.
+/// A byte for each square of the finest grid, and one that takes all points that are not near the surface.
 using SquareBytes = std::array<std::uint8_t, kSquares + 8>;
 
-/// Sets the bytes of squares that have points near the plane.
+/// Sets the bytes of squares that have points near the surface. The squares of many points are found first, with
+/// vectors; the bytes are set one by one.
 inline __attribute__((always_inline)) void markBytes(std::span<const CellPoint> points, float layer,
                                                      const CellSurface& surface, SquareBytes& bytes) {
   constexpr int kShift = std::countr_zero(1024u / kCellGrid);
@@ -69,7 +70,7 @@ STRATA_TARGET_AVX2 void markBytesAvx2(std::span<const CellPoint> points, float l
   markBytes(points, layer, surface, bytes);
 }
 
-/// Not every processor that this is compiled for counts bits by itself.
+/// The plain instruction set has no instruction for this.
 int countBits(std::uint64_t bits) {
   bits -= bits >> 1 & 0x5555555555555555u;
   bits = (bits & 0x3333333333333333u) + (bits >> 2 & 0x3333333333333333u);
@@ -84,7 +85,7 @@ int countBits(const SquareRows& rows) {
   return count;
 }
 
-/// Bit i of the result: bit 2 i or bit 2 i + 1 of the row.
+/// Bit i of the result is bit 2 i or bit 2 i + 1 of the row.
 std::uint32_t halved(std::uint32_t row) {
   row = (row | row >> 1) & 0x5555u;
   row = (row | row >> 1) & 0x3333u;
@@ -92,8 +93,9 @@ std::uint32_t halved(std::uint32_t row) {
   return (row | row >> 4) & 0x00ffu;
 }
 
-/// Eigenvector of the smallest eigenvalue of a symmetric matrix (xx yy zz xy xz yz); zero where it is not unique.
-/// Eigenvalues in closed form (Smith 1961); the vector is the longest cross product of two rows of A - λ.
+/// The eigenvector of the smallest eigenvalue λ of a symmetric matrix A (xx yy zz xy xz yz); zero when it is not
+/// unique. The eigenvalues have a closed form (Smith 1961); the vector is the longest cross product of two rows of A -
+/// λ.
 glm::vec3 smallestAxis(const std::array<double, 6>& a) {
   const double mean = (a[0] + a[1] + a[2]) / 3.0;
   const double off = a[3] * a[3] + a[4] * a[4] + a[5] * a[5];
@@ -160,7 +162,7 @@ void markSquares(std::span<const CellPoint> points, float layer, CellSurface& su
 ClosedSquares::ClosedSquares(const CellSurface& surface, int gridSide) : side(gridSide) {
   const int each = kCellGrid / side;
   const float size = 1.0f / static_cast<float>(side);
-  // The plane's height over a square's middle is linear in its column and row.
+  // The surface's height over the middle of a square is linear in the square's column and row.
   const float alongU = -surface.normal[static_cast<glm::length_t>(surface.u)] /
                        surface.normal[static_cast<glm::length_t>(surface.w)] * size;
   const float alongV = -surface.normal[static_cast<glm::length_t>(surface.v)] /
@@ -175,7 +177,7 @@ ClosedSquares::ClosedSquares(const CellSurface& surface, int gridSide) : side(gr
     std::uint32_t points = 0;
     for (int i = 0; i < each; ++i) points |= surface.squares[static_cast<std::size_t>(row * each + i)];
     for (int columns = kCellGrid; columns > side; columns /= 2) points = halved(points);
-    // Columns in which it stays in the cell.
+    // The columns of this row in which the surface stays inside the cell.
     const float height = first + alongV * static_cast<float>(row);
     std::uint32_t in = 0;
     if (isLevel) {
@@ -219,7 +221,7 @@ SquareRectangle largestRectangle(const SquareRows& rows, int side, int least) {
       common &= rows[static_cast<std::size_t>(bottom - 1)];
       if (countBits(common) * (side - top) <= bestArea) break;
       if (countBits(common) * (bottom - top) <= bestArea) continue;
-      // The longest run: thinned by one at its end until nothing is left.
+      // The longest run of bits: each step takes one off every run, so the last bit left belongs to the longest.
       int length = 0, last = 0;
       for (std::uint32_t left = common; left != 0; left &= left << 1, ++length) last = std::countr_zero(left);
       if (length * (bottom - top) <= bestArea) continue;

@@ -8,19 +8,17 @@
 namespace strata {
 namespace {
 
-constexpr int kSide = CoarseDepth::kSide;
 constexpr int kEach = CoarseDepth::kSamplesACell;
-constexpr int kSamples = CoarseDepth::kSamples;
 /// Rows whose spans are solved together: one vector of floats.
 constexpr int kRows = 8;
-/// A plane seen from nearer to itself than so many times its thickness is seen edge-on.
+/// An eye that is nearer to a surface's plane than this many times its thickness sees it edge-on.
 constexpr double kEdgeOn = 2.0;
-/// Sides of a sample that a cell has to span, or too few samples would be closed to be worth the time.
+/// The least width of an occluder's cell in samples. Smaller ones would close too few samples to be worth the time.
 constexpr double kLeastSamples = 4.0;
-/// Share of its depth that a node has to lie behind an occluder: floats round.
+/// A node has to lie behind an occluder by this share of its depth, because floats round.
 constexpr float kBehind = 1e-5f;
 
-/// Four samples beside each other.
+/// Four samples side by side.
 using Four = float __attribute__((vector_size(16)));
 /// One value for each of the rows that are solved together.
 using Rows = float __attribute__((vector_size(kRows * sizeof(float))));
@@ -42,7 +40,8 @@ void raiseSpan(float* line, int begin, int end, float start, float step) {
     const Four most = now > old ? now : old;
     std::memcpy(line + x, &most, sizeof most);
   };
-  const Four last = at(end - 4);  // before it is written in part: reading that back at once is slow
+  // Read before a part of it is written: loading what has just been stored in pieces is slow.
+  const Four last = at(end - 4);
   for (int x = begin; x < end - 4; x += 4) raise(x, at(x));
   raise(end - 4, last);
 }
@@ -93,14 +92,14 @@ void CoarseDepth::add(const OccluderSet& set) {
 
 bool CoarseDepth::project(const Occluder& occluder, const glm::dvec3& originFromEye, Polygon& out) const {
   const glm::dvec3 normal(occluder.normal);
-  // The plane relative to the eye, dot(normal, d) = along, and its layer's far side.
+  // The plane relative to the eye, dot(normal, d) = along, and the far side of its layer.
   const double along = static_cast<double>(occluder.offset) + glm::dot(normal, originFromEye);
   const double thickness = static_cast<double>(occluder.back);
   const double towards = view_.orthographic ? glm::dot(normal, basis_.forward) : along;
   if (std::abs(along) < kEdgeOn * thickness && !view_.orthographic) return false;
   const double farSide = along + (towards > 0.0 ? thickness : -thickness);
 
-  // Only what is so far away that its gaps are small enough; none of it where they are not anywhere.
+  // Only the part that is far enough away for its gaps to be small enough on the screen.
   const double mostPx = occluder.whole ? options_.gapPixels : options_.openGapPixels;
   const double gapPx = static_cast<double>(occluder.gap) * pixelsPerMetre_;  // at 1 m, or everywhere
   if (view_.orthographic && gapPx > mostPx) return false;
@@ -136,8 +135,8 @@ bool CoarseDepth::project(const Occluder& occluder, const glm::dvec3& originFrom
 
 bool CoarseDepth::linearNearness(const glm::dvec3& normal, double along, double stepX, double stepY,
                                  Linear& out) const {
-  // Where a ray through (x, y) of the image meets the plane dot(normal, d) = along: with a ray of depth 1,
-  // 1 / z = normal . ray / along.
+  // A ray of depth 1 through (x, y) of the picture meets the plane dot(normal, d) = along at the depth z with
+  // 1 / z = normal . ray / along, which is linear in x and y.
   const double pixel = 1.0 / pixelsPerMetre_;
   const double toForward = glm::dot(normal, basis_.forward);
   const double perColumn = glm::dot(normal, basis_.right) * pixel, perRow = -glm::dot(normal, basis_.up) * pixel;
@@ -162,7 +161,7 @@ void CoarseDepth::fill(const Polygon& polygon) {
     twiceArea += a.x * b.y - b.x * a.y;
   }
   if (!(std::abs(twiceArea) > 1e-6f)) return;
-  // Samples stand at the middles: row r at y = r + 0.5.
+  // Samples lie in the middle of their squares: row r at y = r + 0.5.
   const int first = static_cast<int>(std::clamp(std::ceil(top - 0.5f), 0.0f, static_cast<float>(kSamples)));
   const int last = static_cast<int>(std::clamp(std::floor(bottom - 0.5f), -1.0f, kSamples - 1.0f));
   if (first > last) return;
@@ -173,11 +172,11 @@ void CoarseDepth::fill(const Polygon& polygon) {
   for (int row = first; row <= last; row += kRows) {
     Rows from = {}, to = Rows{} + static_cast<float>(kSamples);
     for (std::size_t i = 0; i < polygon.corners; ++i) {
-      // Inside: (b - a) x (p - a) >= 0, for a polygon that runs clockwise on the screen.
+      // A point p is inside an edge when (b - a) x (p - a) >= 0, for a polygon that runs clockwise on the screen.
       glm::vec2 a = polygon.corner[i], b = polygon.corner[i + 1 < polygon.corners ? i + 1 : 0];
       if (twiceArea < 0.0f) std::swap(a, b);
       const glm::vec2 d = b - a;
-      if (std::abs(d.y) < 1e-6f) continue;  // rows beyond a level edge are not visited
+      if (std::abs(d.y) < 1e-6f) continue;  // a level edge bounds rows, and `first` and `last` do that already
       const float slope = d.x / d.y;
       const Rows edge = kOrder * slope + (a.x + (static_cast<float>(row) + 0.5f - a.y) * slope);
       if (d.y > 0.0f)  // inside is to the left
@@ -185,7 +184,7 @@ void CoarseDepth::fill(const Polygon& polygon) {
       else
         from = edge > from ? edge : from;
     }
-    // The first sample whose middle is not before `from`, and the first that is beyond `to`.
+    // The first sample whose middle is not before `from`, and the first one beyond `to`.
     int begin[kRows], end[kRows];
     for (int r = 0; r < kRows; ++r) {
       begin[r] = static_cast<int>(std::min(from[r], static_cast<float>(kSamples)) + 0.5f);
@@ -199,8 +198,8 @@ void CoarseDepth::fill(const Polygon& polygon) {
 
 void CoarseDepth::finish() {
   if (lastRow_ < firstRow_) return;
-  // Each cell takes the least of its samples and of those one beyond on every side (at the image's border, of those
-  // that there are): what is seen past an occluder's edge by less than a sample counts as seen.
+  // Each cell takes the least of its samples and of those one further out on every side, as far as there are any: a
+  // thing that shows past an occluder's edge by less than a sample counts as seen. Columns first, then rows.
   for (int row = firstRow_; row <= lastRow_; ++row) {
     const Nearness* const line = samples_.data() + static_cast<std::size_t>(row) * kSamples;
     Nearness* const out = narrowed_.data() + static_cast<std::size_t>(row) * kSide;
@@ -241,7 +240,7 @@ bool CoarseDepth::hides(const Contour& contour, double reach) const {
     nearest = std::min(nearest, depth);
     const double w = glm::dot(projection_.rowW, point);
     const glm::dvec2 at(glm::dot(projection_.rowX, point) / w, glm::dot(projection_.rowY, point) / w);
-    // How far a ball of the margin around (x, z) reaches on the screen: m / (z - m) (1 + x / z) at most.
+    // A ball of radius m around (x, z) reaches at most m / (z - m) (1 + x / z) further on the screen.
     double grown = margin * pixelsPerMetre_;
     if (!view_.orthographic) {
       const glm::dvec2 fromMiddle = glm::abs(at - 0.5 * glm::dvec2(view_.width, view_.height)) / pixelsPerMetre_;
@@ -262,14 +261,14 @@ CoarseDepth::BoxFaces CoarseDepth::facesOf(const Contour& contour, double reach)
   for (std::size_t a = 0; a < 3; ++a) {
     glm::dvec3 axis = contour.axis[a];
     if (contour.half[a] == 0.0) axis = glm::cross(contour.axis[(a + 1) % 3], contour.axis[(a + 2) % 3]);
-    if (!(glm::dot(axis, axis) > 0.5)) continue;  // a line or a point: its other faces do
+    if (!(glm::dot(axis, axis) > 0.5)) continue;  // a line or a point has no such faces; its others suffice
     for (const double sign : {-1.0, 1.0}) {
       const glm::dvec3 outwards = axis * sign;
       const double along = glm::dot(outwards, toCentre) + contour.half[a] + reach;
       Linear nearness;
       if (!linearNearness(outwards, along, stepX, stepY, nearness)) continue;
       const bool towardsEye = view_.orthographic ? glm::dot(outwards, basis_.forward) < 0.0 : along < 0.0;
-      // The largest value in a cell for where rays enter, the least for where they leave.
+      // The largest value in the cell where rays enter and the least where they leave: the box may only grow.
       const float spread = 0.5f * (std::abs(nearness.b) + std::abs(nearness.c));
       nearness.a += 0.5f * (nearness.b + nearness.c) + (towardsEye ? spread : -spread);
       if (towardsEye)

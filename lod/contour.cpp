@@ -19,8 +19,8 @@ Contour contourOf(const NodeRecord& record) {
 
 namespace {
 
-/// The point in the box's frame, without sign. Along a direction in which the box has no extent the frame has no
-/// axis; what the other axes leave of the distance is counted there.
+/// The absolute coordinates of a point in the box's frame. A flat box has one axis that is zero; the point's distance
+/// along it is what the other axes leave of its length.
 std::array<double, 3> offsetInBox(const Contour& contour, const glm::dvec3& relative) {
   std::array<double, 3> offset;
   double rest = glm::dot(relative, relative);
@@ -78,7 +78,7 @@ ViewVolume::ViewVolume(const View& view)
 
 bool contourInView(const Contour& contour, double reach, const ViewVolume& volume) {
   const glm::dvec3 relative = contour.centre - volume.eye;
-  // Not to lose a box that touches a plane to rounding.
+  // A box that touches a plane must not be lost to rounding.
   const double slack = reach + 1e-12 * (std::abs(relative.x) + std::abs(relative.y) + std::abs(relative.z));
   for (const glm::dvec4& plane : volume.planes) {
     const glm::dvec3 normal(plane);
@@ -95,8 +95,8 @@ ContourOnScreen projectContour(const Contour& contour, double reach, const ViewV
   ContourOnScreen screen;
   screen.pixelsPerMetre = volume.pixelsPerMetre;
   if (!volume.orthographic) {
-    // Two lower bounds of the depth of what is visible: the box's own, and that of any point of the image at this
-    // distance. The second serves for long boxes that pass beside or below the eye.
+    // Two lower bounds of the depth of a visible point: the least depth of the box, and the depth at the picture's
+    // corner of a point at this distance. The second helps with long boxes that pass beside or below the eye.
     const double ownDepth = glm::dot(relative, volume.forward) - extentAlong(contour, volume.forward) - reach;
     screen.pixelsPerMetre /= std::max({ownDepth, distance * volume.cosHalfDiagonal, volume.nearPlane});
   }

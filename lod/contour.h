@@ -8,19 +8,19 @@
 
 namespace strata {
 
-/// The oriented box around a node's own points, taken out of the packed record.
+/// The oriented box around a node's own points, as doubles.
 struct Contour {
-  glm::dvec3 centre;               ///< world
-  std::array<glm::dvec3, 3> axis;  ///< unit vectors; zero where the box has no extent
+  glm::dvec3 centre;               ///< world coordinates
+  std::array<glm::dvec3, 3> axis;  ///< unit vectors; zero along which the box has no extent
   std::array<double, 3> half;      ///< metres
 };
 Contour contourOf(const NodeRecord& record);
 
-/// Distance of a point from the box in metres, 0 inside.
+/// The distance of a point from the box in metres; 0 inside.
 double distanceTo(const Contour& contour, const glm::dvec3& point);
 
-/// A View in the form that testing many contours needs. Of a part of a picture the planes are the part's and all else
-/// is the picture's, so that a node is drawn with as many points in each part that it reaches into.
+/// A View in the form that testing many contours needs. For a tile the planes are the tile's and everything else is the
+/// whole picture's, so that a node gets the same number of points in every tile that it reaches into.
 struct ViewVolume {
   explicit ViewVolume(const View& view);
 
@@ -28,20 +28,20 @@ struct ViewVolume {
   glm::dvec3 eye, forward;
   double nearPlane;        ///< metres
   double pixelsPerMetre;   ///< at 1 m in perspective, everywhere in an orthographic view
-  double cosHalfDiagonal;  ///< of the angle between the view direction and the image's corners
+  double cosHalfDiagonal;  ///< cosine of the angle between the view direction and the picture's corners
   bool orthographic;
 };
 
-/// True when some of the contour, grown by `reach` metres on all sides, may be in view; never false for one that is.
-/// Exact for each of the five planes: the box's extent along the plane's normal.
+/// False only when the contour, grown by `reach` metres on all sides, is out of view. The test is exact for each of the
+/// five planes: it takes the box's extent along the plane's normal.
 bool contourInView(const Contour& contour, double reach, const ViewVolume& volume);
 
-/// The contour as it appears on the screen, at the point of it that is nearest to the eye.
+/// The contour as it appears on the screen at its point nearest to the eye.
 struct ContourOnScreen {
-  double pixelsPerMetre;  ///< at the nearest depth at which some of the contour may be visible
-  double faceArea;        ///< square metres: of the silhouette, or of the largest face where that is more
+  double pixelsPerMetre;  ///< at the least depth at which a part of the contour may be visible
+  double faceArea;        ///< square metres of the silhouette or of the largest face, whichever is more
   double facing;          ///< silhouette / largest face, at most 1: 1 seen face-on, near 0 for a flat box seen edge-on
-  double extentPx;        ///< the longest side
+  double extentPx;        ///< length of the longest side
 };
 ContourOnScreen projectContour(const Contour& contour, double reach, const ViewVolume& volume);
 

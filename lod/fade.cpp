@@ -31,6 +31,7 @@ std::uint32_t Fade::allow(std::uint32_t node, std::uint32_t wanted, bool wasMiss
   const Drawn* const before = find(last_, node);
   Drawn drawn{node, wanted, false};
   if (share_ < 1.0) {
+    // A node below one that comes at once comes at once too: couldBeDrawnLast() looks at its parent.
     drawn.atOnce = before == nullptr && (wasMissing || !couldBeDrawnLast(node));
     if (!drawn.atOnce) {
       const double growth = share_ * hierarchy_.nodes[node].pointCount;

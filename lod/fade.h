@@ -12,44 +12,47 @@
 
 namespace strata {
 
-/// How fast nodes may come in. The selection is continuous in the view, but a camera that passes a wall closely, or
-/// dives, changes the view so fast that a node would jump from nothing to all within a frame or two. A node that could
-/// have been drawn last time, being in memory, in view and not hidden, grows by an even share of its points a second;
-/// one that could not comes at once, and all that comes below it. One thread; a list's nodes by ascending index.
+/// Limits how fast nodes come in. The selection is continuous in the view, but a camera that dives, or passes close to
+/// a wall, changes the view so fast that a node would jump from nothing to all of its points within a frame or two. A
+/// node that could have been drawn last time (it was in memory, in view and not hidden) grows by an even share of its
+/// points per second. Any other node comes at once, and so does everything that comes below it. For one thread, which
+/// asks for the nodes of a list in ascending order.
 class Fade {
  public:
   using Time = std::chrono::steady_clock::time_point;
 
-  /// The arguments have to outlive it.
+  /// The arguments have to outlive the Fade.
   Fade(const Hierarchy& hierarchy, const HierarchyIndex& index) : hierarchy_(hierarchy), index_(index) {}
 
-  /// A new list begins. From nothing to all takes `seconds` at least; 0: nothing is held back.
+  /// Begins a list. A node takes at least `seconds` from no points to all; 0 holds nothing back.
   void begin(double seconds, Time now);
-  /// What of the `wanted` points of a node is drawn now, at least 1 of them. Its parent, where it has one, has been
-  /// asked for before; `wasMissing`: the last list wanted it and could not have it.
+  /// How many of the `wanted` points of a node are drawn now, at least 1. Its parent has been asked for before, unless
+  /// it is the root. `wasMissing` says that the last list wanted the node and could not have it.
   std::uint32_t allow(std::uint32_t node, std::uint32_t wanted, bool wasMissing);
-  /// The list is done. `hidden`: the topmost nodes that were left out as hidden.
+  /// Ends the list. `hidden` are the topmost nodes that were left out as hidden.
   void end(const View& view, std::span<const std::uint32_t> hidden);
 
-  /// Nodes that the list has fewer points of than wanted.
+  /// How many nodes of the list have fewer points than wanted.
   std::uint32_t held() const { return held_; }
 
  private:
   struct Drawn {
     std::uint32_t node = 0, points = 0;
-    bool atOnce = false;  ///< it is new and was not held back
+    bool atOnce = false;  ///< it is new and came at once
   };
   static const Drawn* find(const std::vector<Drawn>& list, std::uint32_t node);
   bool couldBeDrawnLast(std::uint32_t node) const;
 
+  // Constant after construction.
   const Hierarchy& hierarchy_;
   const HierarchyIndex& index_;
 
-  double share_ = 1.0;  ///< of its points, by which a node may grow
+  // The list that has begun.
+  double share_ = 1.0;  ///< share of its points by which a node may grow in this list
   std::uint32_t held_ = 0;
-  std::vector<Drawn> now_;
+  std::vector<Drawn> now_;  ///< by ascending node
 
-  // Of the last list.
+  // The list before.
   std::vector<Drawn> last_;
   std::optional<ViewVolume> lastVolume_;
   std::vector<std::uint32_t> lastHidden_;  ///< ascending

@@ -8,7 +8,7 @@
 namespace strata {
 namespace {
 
-/// How far the farthest corner of `inner` is from `outer`.
+/// The distance of the corner of `inner` that is farthest from `outer`.
 double farthestCorner(const Contour& inner, const Contour& outer) {
   double farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -27,7 +27,7 @@ HierarchyIndex indexHierarchy(const Hierarchy& hierarchy) {
   HierarchyIndex index;
   index.parent.assign(count, HierarchyIndex::kNoParent);
   index.reach.assign(count, 0.0f);
-  // Backwards: in breadth-first order everything below a node stands after it.
+  // Backwards, because in breadth-first order everything below a node comes after it.
   for (std::size_t node = count; node-- > 0;) {
     const NodeRecord& record = hierarchy.nodes[node];
     const std::size_t first = record.firstChild;
@@ -40,7 +40,7 @@ HierarchyIndex indexHierarchy(const Hierarchy& hierarchy) {
       const double outside = farthestCorner(contourOf(hierarchy.nodes[child]), contour);
       reach = std::max(reach, outside + static_cast<double>(index.reach[child]));
     }
-    // Floats round to nearest; a reach must not be short.
+    // Floats round to nearest, but a reach must not be too short.
     index.reach[node] = static_cast<float>(reach * (1.0 + 1e-6));
   }
   return index;

@@ -6,17 +6,17 @@
 
 namespace strata {
 
-/// What the walk and the cache need beyond the records, made once when a store is opened: 8 bytes a node.
+/// What the walk and the cache need beyond the records: 8 bytes per node, made once when a store is opened.
 struct HierarchyIndex {
-  std::vector<std::uint32_t> parent;  ///< index of the parent; of the root: kNoParent
-  /// Metres by which a node's contour has to be grown on all sides to hold the contours of everything below it.
-  /// A contour is that of the node's own points; a lamp post in a child may stick out of the flat ground above it.
+  std::vector<std::uint32_t> parent;  ///< index of each node's parent; kNoParent for the root
+  /// Metres by which each node's contour has to be grown on all sides to hold the contours of everything below it. A
+  /// contour bounds the node's own points alone: a lamp post in a child may stick out of the flat ground above it.
   std::vector<float> reach;
 
   static constexpr std::uint32_t kNoParent = 0xffffffffu;
 };
 
-/// Records that do not form a tree (a child index that does not follow its parent) are left without a parent.
+/// Children whose index does not follow their parent's, or lies beyond the end, get no parent: records may be damaged.
 HierarchyIndex indexHierarchy(const Hierarchy& hierarchy);
 
 }  // namespace strata

@@ -10,19 +10,19 @@ namespace strata {
 
 using TraceClock = std::chrono::steady_clock;
 
-/// Something that a thread did. Names are literals.
+/// A stretch of time in which a thread did one thing. The names are literals.
 struct TraceSpan {
   const char* name = "";
   TraceClock::time_point begin, end;
-  const char* countName = nullptr;  ///< what `count` counts: "bytes", "points"; null = nothing
+  const char* countName = nullptr;  ///< the things that `count` counts, such as "bytes"; null for nothing
   std::uint64_t count = 0;
 };
 
-/// The spans of one thread: it alone writes, and nobody reads before it has ended or rests. Spans of a lane are nested
-/// or apart.
+/// The spans of one thread. Only that thread writes them, and others read only after it has ended or while it rests.
+/// Two spans of a lane are nested or apart.
 class TraceLane {
  public:
-  static constexpr std::size_t kMostSpans = std::size_t{1} << 20;  ///< 40 MB; those after it are counted alone
+  static constexpr std::size_t kMostSpans = std::size_t{1} << 20;  ///< 40 MB; further ones are only counted
 
   explicit TraceLane(std::string name) : name_(std::move(name)) {}
 
@@ -42,10 +42,10 @@ class TraceLane {
   std::uint64_t dropped_ = 0;
 };
 
-/// What several threads did over the same time. Lanes stay where they are.
+/// The lanes of several threads over the same time. A lane keeps its address.
 class Trace {
  public:
-  /// Before the thread begins that the lane is for.
+  /// Call it before the lane's thread begins.
   TraceLane& addLane(std::string name) { return lanes_.emplace_back(std::move(name)); }
   const std::deque<TraceLane>& lanes() const { return lanes_; }
   TraceClock::time_point start() const { return start_; }
@@ -55,7 +55,7 @@ class Trace {
   std::deque<TraceLane> lanes_;
 };
 
-/// A span from here to the end of the block. Without a lane it does nothing, not even ask for the time.
+/// A span from its construction to the end of its block. Without a lane it does nothing and does not read the clock.
 class TraceScope {
  public:
   TraceScope(TraceLane* lane, const char* name) : lane_(lane) {
