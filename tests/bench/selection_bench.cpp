@@ -18,7 +18,7 @@ const test::Terrain& terrain() {
   return made;
 }
 
-/// The argument is the wanted points a pixel; the number of nodes goes with it.
+/// The argument is the wanted points per pixel; the number of nodes follows from it.
 void selectFromTerrain(benchmark::State& state, double height, std::uint64_t budget = std::uint64_t{1} << 31) {
   const HierarchyIndex index = indexHierarchy(terrain().hierarchy);
   View view = test::viewOfTerrain(terrain().info, 0.5, 0.1, height, 1920, 1080);
@@ -47,7 +47,7 @@ BENCHMARK(highAbove)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMicrosecond);
 
 // --- the whole pass, everything in memory
 
-/// A town of 100,001 nodes and its points, as far as the views here want them.
+/// A town of 100,001 nodes, with the points of those that the views here want.
 struct LoadedTown {
   test::Town town{100'001};
   HierarchyIndex index = indexHierarchy(town.hierarchy);
@@ -68,7 +68,7 @@ LoadedTown& loadedTown() {
   return loaded;
 }
 
-/// Arguments: metres over the street, wanted points a pixel in tenths.
+/// Arguments: metres above the street; wanted points per pixel, in tenths.
 void pass(benchmark::State& state, bool occlusion) {
   constexpr double kStep = 0.05, kWay = 5.0;  // metres, there and back
   LoadedTown& loaded = loadedTown();

@@ -12,13 +12,13 @@
 
 namespace strata {
 
-/// A disk with faults, which it has from begin() on.
+/// A file on a disk that has faults from begin() on.
 class TroubledDisk final : public ByteSource {
  public:
   struct Trouble {
-    std::chrono::microseconds latency{0};  ///< of every read
-    double bytesPerSecond = 0.0;           ///< 0 = as fast as it goes
-    double failing = 0.0, garbage = 0.0;   ///< shares of the reads
+    std::chrono::microseconds latency{0};  ///< added to every read
+    double bytesPerSecond = 0.0;           ///< 0: no limit
+    double failing = 0.0, garbage = 0.0;   ///< shares of the reads that fail, and that bring a wrong byte
   };
 
   TroubledDisk(const std::string& path, const Trouble& trouble) : file_(openFile(path)), trouble_(trouble) {}
@@ -49,9 +49,9 @@ class TroubledDisk final : public ByteSource {
   mutable std::atomic<std::uint64_t> calls_{1};
 };
 
-/// A store on such a disk.
+/// A store on a TroubledDisk.
 struct TroubledStore {
-  const TroubledDisk* disk;  ///< of the store
+  const TroubledDisk* disk;  ///< which the store owns
   std::shared_ptr<const Store> store;
 };
 inline TroubledStore openWith(const std::string& store, const TroubledDisk::Trouble& trouble) {

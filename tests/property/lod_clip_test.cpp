@@ -1,4 +1,4 @@
-// A clip region for the selection: what it leaves out would not have been seen.
+// A clip for the selection: nodes that it leaves out would not have been seen.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -1,5 +1,5 @@
-// How fast nodes come in along flights, in seconds of the path. Everything is in memory: a node that was missing may
-// come at once.
+// How fast nodes come in along flights, in seconds of the path. Everything is in memory, for a node that was missing
+// may come at once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 constexpr double kFps = 30.0;
 constexpr int kTenth = 3;  // frames
 
-/// Leaves hold what is left of a scan, so most have few points, which are soon all wanted.
+/// Leaves hold the rest of a scan, so most have few points, and a view soon wants all of them.
 test::Town townOfThinLeaves() {
   constexpr std::uint32_t kThinner = 8;  // along an axis
   test::Town town(20'001);
@@ -30,7 +30,7 @@ test::Town townOfThinLeaves() {
   return town;
 }
 
-/// A town in which every node that is asked for is there, as a number of points.
+/// A town in which every node that is asked for is resident, with the right number of points and nothing else.
 class ResidentTown {
  public:
   ResidentTown() : index_(indexHierarchy(town.hierarchy)), store_(town.info, town.hierarchy, noBytes()) {}
@@ -38,12 +38,12 @@ class ResidentTown {
   test::Town town = townOfThinLeaves();
 
   struct Worst {
-    double growth = 0.0;  ///< of a node's points, within a tenth of a second
+    double growth = 0.0;  ///< the largest share of its points that a node gained within a tenth of a second
     int jumps = 0;        ///< nodes that grew from nothing to all in that time
     std::size_t nodes = 0;
   };
 
-  /// `at`: the view after so many seconds of the path. Nodes that come into view are not counted, only those that were.
+  /// `at` gives the view after so many seconds of the path. Only nodes that were in view all the time are counted.
   Worst fly(const std::function<View(double)>& at, double seconds, double fadeSeconds) {
     NodeCache cache(std::uint64_t{16} << 30, index_.parent);
     DepthBuffers depth;

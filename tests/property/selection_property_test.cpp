@@ -1,4 +1,4 @@
-// What holds for every view: found by walking about at random.
+// Properties of the selection that hold for every view, tested with random views.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -187,7 +187,8 @@ TEST(SelectionProperty, HoldsForRandomViews) {
   EXPECT_GT(most, 200u);
 }
 
-/// Points of the selection that fall into the image: each node's count times the part of its ground that is in view.
+/// How many points of the selection fall into the picture: for each node, its points times the share of its ground that
+/// is in view.
 double pointsInImage(const Terrain& terrain, const Selection& selection, const View& view) {
   constexpr int kSamples = 12;  // an axis
   double total = 0.0;

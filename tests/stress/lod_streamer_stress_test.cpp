@@ -1,4 +1,5 @@
-// Streamers under everything at once, for ThreadSanitizer and for deadlocks. Times are not tested.
+// Streamers whose every function is called at once, to find races (under ThreadSanitizer) and deadlocks. No test looks
+// at times.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -44,7 +45,7 @@ View randomView(std::mt19937& random) {
   return view;
 }
 
-/// Reads all that is to be drawn, as a rasterizer would; a torn or recycled node does not add up.
+/// Reads everything that is to be drawn, as a rasterizer would. A torn or recycled node does not add up.
 std::uint64_t draw(const RenderList& list) {
   std::set<std::uint64_t> keys;
   std::uint64_t sum = 0;

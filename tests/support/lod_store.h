@@ -19,7 +19,7 @@
 
 namespace strata::test {
 
-/// Bytes in memory. `beforeRead` is called with the number of the read, from 0: it may wait or throw.
+/// Bytes in memory. Each read first calls `beforeRead` with the number of the read, from 0; it may wait or throw.
 class MemoryBytes final : public ByteSource {
  public:
   explicit MemoryBytes(std::vector<std::byte> bytes, std::function<void(std::uint64_t)> beforeRead = {})
@@ -42,14 +42,14 @@ class MemoryBytes final : public ByteSource {
 };
 
 struct TerrainOptions {
-  int levels = 4;     ///< of a full quadtree over the ground
+  int levels = 4;     ///< levels of a full quadtree over the ground
   int side = 16;      ///< a node keeps side x side points
   int cubeBits = 20;  ///< the cube spans 2^cubeBits millimetres
   bool normals = false;
 };
 
-/// Hierarchy (and payloads, if asked for) of a flat, slightly rough ground: a quadtree with all its points in the
-/// lowest octants.
+/// The hierarchy, and the payloads if asked for, of a flat and slightly rough ground: a quadtree with all its points in
+/// the lowest octants.
 struct Terrain {
   StoreInfo info;
   Hierarchy hierarchy;
@@ -73,7 +73,7 @@ inline StoreInfo terrainInfo(const TerrainOptions& options) {
   return info;
 }
 
-/// The node's points in a shuffled order (any prefix is an even subsample), on the grid of `info`.
+/// The node's points on the grid of `info`, shuffled, so that every prefix is an even subsample.
 inline NodePoints terrainPoints(NodeKey key, const StoreInfo& info, const TerrainOptions& options) {
   std::mt19937_64 random(key.code);
   const Box cube = nodeCube(key, info.rootCube());
@@ -150,7 +150,7 @@ inline std::shared_ptr<const Store> makeStore(const Terrain& terrain,
                                  std::make_unique<MemoryBytes>(terrain.points, std::move(beforeRead)));
 }
 
-/// The index of each node's parent by a walk down, the test's own way.
+/// The index of each node's parent, found by a walk down, which is not how indexHierarchy() finds it.
 inline std::vector<std::uint32_t> parentsOf(const Hierarchy& hierarchy) {
   std::vector<std::uint32_t> parents(hierarchy.nodes.size(), 0xffffffffu);
   for (std::uint32_t i = 0; i < hierarchy.nodes.size(); ++i)
@@ -159,7 +159,7 @@ inline std::vector<std::uint32_t> parentsOf(const Hierarchy& hierarchy) {
   return parents;
 }
 
-/// A view from above the terrain, at `height` metres over (x, y) in fractions of the cube, looking down.
+/// A view down onto the terrain, from `height` metres above (x, y), which are fractions of the cube.
 inline View viewOfTerrain(const StoreInfo& info, double x, double y, double height, int width = 640,
                           int heightPx = 480) {
   const Box cube = info.rootCube();

@@ -1,5 +1,5 @@
 #pragma once
-// A town in memory, with walls that hide what is behind them, for measuring what an LOD pass costs.
+// A town in memory, with walls that hide things behind them, for measuring the cost of an LOD pass.
 
 #include <algorithm>
 #include <memory>
@@ -13,13 +13,15 @@
 
 namespace strata::test {
 
-/// Square houses with flat roofs on a square grid of streets. Its hierarchy is a quadtree over the ground, as a scan's
-/// octree is that is wide and flat; nodes hold equally many points, as far as that is possible half of them on walls.
+/// Square houses with flat roofs on a square grid of streets. The hierarchy is a quadtree over the ground, like the
+/// octree of a scan that is wide and flat. All nodes hold the same number of points, half of them on walls if there are
+/// any.
 class Town {
  public:
-  static constexpr double kBlock = 32.0, kStreet = 10.0;  ///< metres: from house to house, and between them
+  static constexpr double kBlock = 32.0,
+                          kStreet = 10.0;  ///< metres from one house to the next, and of the street between them
   static constexpr double kLowest = 6.0, kHighest = 15.0;
-  static constexpr int kSide = 128;  ///< of a node's points: kSide squared
+  static constexpr int kSide = 128;  ///< a node has kSide squared points
 
   explicit Town(std::size_t nodes) {
     info.cubeBits = 22;  // 4 km in millimetres
@@ -40,7 +42,7 @@ class Town {
     info.nodes = hierarchy.nodes.size();
   }
 
-  /// A node as the loader would have it, with the occluders that are found in its points.
+  /// A node as a loader would decode it, with the occluders that are found in its points.
   std::shared_ptr<StreamedNode> load(std::uint32_t index) const {
     const NodeRecord& record = hierarchy.nodes[index];
     const Box cube = nodeCube(NodeKey{record.key}, info.rootCube());
@@ -65,7 +67,7 @@ class Town {
     return node;
   }
 
-  /// Of somebody at so many metres over the middle of a street, looking along it.
+  /// The view of somebody `height` metres above the middle of a street, looking along it.
   View along(double metres, double height) const {
     View view;
     const double street = (std::floor(0.5 * info.bounds.size().x / kBlock) + 1.0) * kBlock - 0.5 * kStreet;
@@ -79,7 +81,7 @@ class Town {
 
  private:
   static double within(double along) { return along - std::floor(along / kBlock) * kBlock; }
-  /// Height of the roof over a place, 0 over a street.
+  /// The height of the roof over a place; 0 over a street.
   double houseAt(const glm::dvec3& p) const {
     const glm::dvec3 d = p - info.bounds.min;
     if (within(d.x) > kBlock - kStreet || within(d.y) > kBlock - kStreet) return 0.0;
@@ -87,7 +89,7 @@ class Town {
         static_cast<std::uint64_t>(d.x / kBlock) * 7919 + static_cast<std::uint64_t>(d.y / kBlock) * 104729;
     return kLowest + (kHighest - kLowest) * static_cast<double>(seed * 0x9e3779b97f4a7c15u >> 40) / (1 << 24);
   }
-  /// The place of a wall in the cube that is nearest to p, at a share of its height; p where there is none.
+  /// The point of a wall in the cube that is nearest to p, at a share of the wall's height; p if there is no wall.
   glm::dvec3 ontoAWall(glm::dvec3 p, const Box& cube, double share) const {
     const glm::dvec3 d = p - info.bounds.min;
     const glm::dvec3 corner = p - glm::dvec3(within(d.x), within(d.y), 0.0);

@@ -192,7 +192,7 @@ TEST_F(NodeCacheTest, AReplacementThatDoesNotFitLeavesTheOldVersion) {
   EXPECT_EQ(cache.stats().residentBytes, kBytes);
 }
 
-/// A slow cache that is plainly right: checked against at every step.
+/// A slow cache that is plainly right. The real one must agree with it at every step.
 class Model {
  public:
   Model(std::uint64_t capacity, std::vector<std::uint32_t> parents)

@@ -16,7 +16,7 @@ using test::Terrain;
 using test::TerrainOptions;
 using test::viewOfTerrain;
 
-/// One point a pixel unless told, for plain numbers.
+/// Wants one point per pixel unless told otherwise, which makes for plain numbers.
 Selection select(const Hierarchy& hierarchy, const View& view,
                  const SelectionOptions& options = {.pointsPerPixel = 1.0}) {
   Selection selection;
@@ -24,7 +24,7 @@ Selection select(const Hierarchy& hierarchy, const View& view,
   return selection;
 }
 
-/// One node: a box with these half sizes around the origin.
+/// A hierarchy of one node, a box with these half sizes around the origin.
 Hierarchy oneBox(glm::vec3 half, std::uint32_t points, ContourClass kind, float spacing) {
   NodeRecord record{};
   record.key = 1;

@@ -31,7 +31,7 @@ const Terrain& terrain() {
 
 View lookDown(double height = 60.0) { return viewOfTerrain(terrain().info, 0.5, 0.3, height); }
 
-/// What a list must be whatever happens: closed under parents, in order, within the nodes.
+/// Checks what holds for every list: parents are in it, nodes are in order, prefixes are no longer than nodes.
 void expectSound(const RenderList& list) {
   std::set<std::uint64_t> keys;
   std::uint64_t points = 0;
@@ -48,7 +48,7 @@ void expectSound(const RenderList& list) {
   EXPECT_EQ(points, list.pointCount);
 }
 
-/// A gate in a byte source: reads wait until it is opened.
+/// A gate in a byte source, at which reads wait until it is opened.
 class Gate {
  public:
   void open() {
