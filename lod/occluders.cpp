@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -295,68 +296,95 @@ int octantOf(const glm::ivec3& cell, int cellsAlong) {
   return (cell.x >= half ? 4 : 0) + (cell.y >= half ? 2 : 0) + (cell.z >= half ? 1 : 0);
 }
 
-/// Joins wholly closed cells that lie side by side in one plane into rectangles, in place, so that a wall of 8 x 8
-/// cells becomes one occluder. It is as coarse as its coarsest cell. Cells with points below them are not joined with
-/// cells without. A rectangle grows along u first, then by whole rows along v.
-void joinCells(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t childMask) {
-  // The surfaces of each cell in order, as a linked list through `found`, by position + 1.
-  std::array<std::uint32_t, kCellCount> firstOf{};
-  std::vector<std::uint32_t> nextOf(found.size());
-  for (std::size_t i = found.size(); i-- > 0;)
-    nextOf[i] = std::exchange(firstOf[found[i].cell], static_cast<std::uint32_t>(i + 1));
-  std::vector<bool> joined(found.size(), false);
-  const auto open = [&](const glm::ivec3& cell) { return (childMask >> octantOf(cell, cellsAlong) & 1) != 0; };
-  const auto isWhole = [](const Finder::Found& f) { return f.part.area() == f.grid * f.grid; };
-  std::vector<std::uint32_t> taken;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    Finder::Found& first = found[i];
-    if (joined[i] || !isWhole(first)) continue;
-    const glm::ivec3 at = cellAt(first.cell);
-    const auto u = static_cast<glm::length_t>(first.surface.u), v = static_cast<glm::length_t>(first.surface.v);
-    // The surface that continues this one so many cells along u and v; found.size() if there is none.
-    const auto other = [&](int alongU, int alongV) {
-      glm::ivec3 cell = at;
-      cell[u] += alongU;
-      cell[v] += alongV;
-      const float height = first.surface.height(static_cast<float>(alongU), static_cast<float>(alongV));
-      const float slope = std::abs(first.surface.height(0.5f, 0.0f) - first.surface.height(0.0f, 0.0f)) +
-                          std::abs(first.surface.height(0.0f, 0.5f) - first.surface.height(0.0f, 0.0f));
-      if (cell[u] >= cellsAlong || cell[v] >= cellsAlong || cell[v] < 0 || std::abs(height) + slope > 0.5f)
-        return found.size();
-      for (std::uint32_t k = firstOf[cellIndex(cell)]; k != 0; k = nextOf[k - 1]) {
-        const Finder::Found& f = found[k - 1];
-        if (!joined[k - 1] && f.seed == first.seed && isWhole(f) && open(cell) == open(at))
-          return static_cast<std::size_t>(k - 1);
-      }
-      return found.size();
-    };
-    if (other(0, 0) == found.size()) continue;
-    int width = 1, height = 1, grid = first.grid;
-    while (other(width, 0) < found.size()) grid = std::min(grid, found[other(width++, 0)].grid);
-    for (bool whole = true; whole;) {
-      taken.clear();
-      for (int k = 0; k < width && whole; ++k) {
-        const std::size_t next = other(k, height);
-        whole = next < found.size();
-        if (whole) taken.push_back(static_cast<std::uint32_t>(next));
-      }
-      if (!whole) break;
-      for (const std::uint32_t k : taken) {
-        joined[k] = true;
-        grid = std::min(grid, found[k].grid);
-      }
-      ++height;
-    }
-    for (int k = 1; k < width; ++k) joined[other(k, 0)] = true;
-    first.grid = grid;
-    first.part = {0, width * grid, 0, height * grid};
-    joined[i] = false;
+/// Joins wholly closed cells that lie side by side in one plane into rectangles, so that a wall of 8 x 8 cells becomes
+/// one occluder. It is as coarse as its coarsest cell. Cells with points below them are not joined with cells without.
+class Joiner {
+ public:
+  Joiner(std::vector<Finder::Found>& found, int cellsAlong, std::uint8_t childMask)
+      : found_(found),
+        cellsAlong_(cellsAlong),
+        childMask_(childMask),
+        next_(found.size()),
+        joined_(found.size(), false) {
+    for (std::size_t i = found.size(); i-- > 0;)
+      next_[i] = std::exchange(first_[found[i].cell], static_cast<std::uint32_t>(i + 1));
   }
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < found.size(); ++i)
-    if (!joined[i]) found[kept++] = found[i];
-  found.resize(kept);
-}
+
+  /// Leaves one surface for each rectangle, and those that nothing continues.
+  void join() {
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      if (!joined_[i] && isWhole(found_[i]) && at(found_[i], 0, 0)) grow(found_[i]);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i)
+      if (!joined_[i]) found_[kept++] = found_[i];
+    found_.resize(kept);
+  }
+
+ private:
+  static bool isWhole(const Finder::Found& found) { return found.part.area() == found.grid * found.grid; }
+  bool hasPointsBelow(const glm::ivec3& cell) const { return (childMask_ >> octantOf(cell, cellsAlong_) & 1) != 0; }
+
+  /// The position of the surface that continues `first` so many cells along u and v, if there is one.
+  std::optional<std::size_t> at(const Finder::Found& first, int alongU, int alongV) const {
+    const CellSurface& surface = first.surface;
+    const glm::ivec3 start = cellAt(first.cell);
+    glm::ivec3 cell = start;
+    int& u = cell[static_cast<glm::length_t>(surface.u)];
+    int& v = cell[static_cast<glm::length_t>(surface.v)];
+    u += alongU;
+    v += alongV;
+    // The surface has to stay in this layer of cells: it must not leave the cell through its top or bottom.
+    const float height = surface.height(static_cast<float>(alongU), static_cast<float>(alongV));
+    const float slope = std::abs(surface.height(0.5f, 0.0f) - surface.height(0.0f, 0.0f)) +
+                        std::abs(surface.height(0.0f, 0.5f) - surface.height(0.0f, 0.0f));
+    if (u >= cellsAlong_ || v >= cellsAlong_ || std::abs(height) + slope > 0.5f) return std::nullopt;
+    for (std::uint32_t k = first_[cellIndex(cell)]; k != 0; k = next_[k - 1]) {
+      const Finder::Found& other = found_[k - 1];
+      if (!joined_[k - 1] && other.seed == first.seed && isWhole(other) &&
+          hasPointsBelow(cell) == hasPointsBelow(start))
+        return k - 1;
+    }
+    return std::nullopt;
+  }
+
+  /// Makes a rectangle out of a surface: along u as far as it goes, then by whole rows along v.
+  void grow(Finder::Found& first) {
+    taken_.clear();
+    int width = 1, height = 1;
+    for (; const std::optional<std::size_t> next = at(first, width, 0); ++width) taken_.push_back(*next);
+    while (takeRow(first, width, height)) ++height;
+    for (const std::size_t other : taken_) {
+      joined_[other] = true;
+      first.grid = std::min(first.grid, found_[other].grid);
+    }
+    first.part = {0, width * first.grid, 0, height * first.grid};
+  }
+
+  /// Takes a row of `width` cells, or nothing when not all of them continue `first`.
+  bool takeRow(const Finder::Found& first, int width, int alongV) {
+    const std::size_t before = taken_.size();
+    for (int alongU = 0; alongU < width; ++alongU) {
+      const std::optional<std::size_t> next = at(first, alongU, alongV);
+      if (!next) {
+        taken_.resize(before);
+        return false;
+      }
+      taken_.push_back(*next);
+    }
+    return true;
+  }
+
+  // Constant after construction.
+  std::vector<Finder::Found>& found_;
+  const int cellsAlong_;
+  const std::uint8_t childMask_;
+  // The surfaces of a cell in order as a linked list through found_, by position + 1; 0 ends it.
+  std::array<std::uint32_t, kCellCount> first_{};
+  std::vector<std::uint32_t> next_;
+
+  std::vector<bool> joined_;        ///< by position in found_: the surface has become a part of another
+  std::vector<std::size_t> taken_;  ///< the other surfaces of the rectangle that grows
+};
 
 }  // namespace
 
@@ -374,7 +402,7 @@ void findOccluders(const NodeData& node, const Box& cube, std::uint8_t childMask
   const float layer = kLayer + static_cast<float>(coarseness);
   const auto metres = static_cast<float>(side);
   std::vector<Finder::Found> all = Finder(node, cube, cellsAlong, layer).find();
-  joinCells(all, cellsAlong, childMask);
+  Joiner(all, cellsAlong, childMask).join();
   const std::size_t most = OccluderSet::mostOf(node.pointCount());
   out.occluders.reserve(std::min(all.size(), most));
   for (const Finder::Found& found : all) {
