@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/random.h"
 #include "io/store/store.h"
 #include "io/store/store_files.h"
 
@@ -36,7 +37,7 @@ class TroubledDisk final : public ByteSource {
     if (trouble_.bytesPerSecond > 0.0)
       wait += std::chrono::duration<double>(static_cast<double>(out.size()) / trouble_.bytesPerSecond);
     if (wait.count() > 0.0) std::this_thread::sleep_for(wait);
-    const double dice = static_cast<double>((call * 0x9e3779b97f4a7c15u) >> 40) / static_cast<double>(1 << 24);
+    const double dice = static_cast<double>((call * kSplitMixStep) >> 40) / static_cast<double>(1 << 24);
     if (dice < trouble_.failing) throw Error(name(), "the disk failed");
     file_->read(offset, out);
     if (dice > 1.0 - trouble_.garbage) out[out.size() / 2] ^= std::byte{0x55};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/make_node.h"
+#include "core/random.h"
 #include "io/store/store.h"
 #include "lod/streamed_node.h"
 #include "tests/support/lod_store.h"
@@ -87,7 +88,7 @@ class Town {
     if (within(d.x) > kBlock - kStreet || within(d.y) > kBlock - kStreet) return 0.0;
     const auto seed =
         static_cast<std::uint64_t>(d.x / kBlock) * 7919 + static_cast<std::uint64_t>(d.y / kBlock) * 104729;
-    return kLowest + (kHighest - kLowest) * static_cast<double>(seed * 0x9e3779b97f4a7c15u >> 40) / (1 << 24);
+    return kLowest + (kHighest - kLowest) * static_cast<double>(seed * kSplitMixStep >> 40) / (1 << 24);
   }
   /// The point of a wall in the cube that is nearest to p, at a share of the wall's height; p if there is no wall.
   glm::dvec3 ontoAWall(glm::dvec3 p, const Box& cube, double share) const {
