@@ -73,7 +73,7 @@ struct DrawOptions {
   Gaze gaze;
 };
 
-/// What a drawing needs of a store: everything that decides which nodes and planes are read.
+/// The part of a drawing that decides which nodes and planes of a store are read.
 struct Shown {
   /// The colour mode whose plane is read. Empty: colour, intensity and classification are read.
   std::optional<ColourMode> colour;

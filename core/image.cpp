@@ -24,7 +24,7 @@ constexpr int kQuickCompression = 3;  // zlib's level; large pictures take long 
 
 }  // namespace
 
-/// What stands between libpng's jumps and our exceptions: no object with a destructor is made in a function that sets
+/// Keeps libpng's jumps and our exceptions apart: no object with a destructor is made in a function that sets
 /// a jump's target.
 struct PngWriter::File {
   std::string path, building, message;

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Attributes for functions that are compiled a second time, for processors with more than the plain instruction set, and
-/// tests of the processor that choose between the two.
+/// Attributes for functions that are compiled a second time, for processors with more than the plain instruction set,
+/// and tests of the processor that choose between the two.
 
 #if defined(__x86_64__)
 /// BMI 2: shifts by any register, deposits of bits; also counts of leading zeros.

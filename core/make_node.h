@@ -6,9 +6,8 @@
 
 namespace strata {
 
-/// A node of points that are in memory, in their order, on a grid of `step` metres, in batches of at most
-/// `batchPoints`. Coordinates are kept to the grid exactly, in as many planes as that takes or `planes` where it is not
-/// 0. It has positions only.
+/// Makes a node out of points in memory, in their order, rounded to a grid of `step` metres, in batches of at most
+/// `batchPoints`. It has positions only, in `planes` planes, or for 0 in the fewest planes that keep the grid exactly.
 std::shared_ptr<NodeData> makeNodeOf(NodeKey key, std::span<const glm::dvec3> points, double step,
                                      std::uint32_t batchPoints = Batch::kMaxPoints, int planes = 0);
 

@@ -2,9 +2,9 @@
 #include <condition_variable>
 #include <mutex>
 
-/// Locks whose discipline the compiler checks: `clang++ -Wthread-safety` refuses every use of a STRATA_GUARDED_BY member
-/// without its lock (Hutchins, Ballman, Sutherland 2014, "C/C++ Thread Safety Analysis"). For other compilers the
-/// annotations are empty.
+/// Locks whose discipline the compiler checks: `clang++ -Wthread-safety` refuses every use of a STRATA_GUARDED_BY
+/// member without its lock (Hutchins, Ballman, Sutherland 2014, "C/C++ Thread Safety Analysis"). For other compilers
+/// the annotations are empty.
 #if defined(__clang__)
 #define STRATA_THREAD_ATTRIBUTE(x) __attribute__((x))
 #else

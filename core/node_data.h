@@ -52,8 +52,8 @@ struct NodeData {
   std::uint64_t bytes() const;  ///< bytes of memory held
 };
 
-/// Packs the direction of a vector of any length as x | y<<8 | z<<16, signed bytes with 127 for 1. Returns 0 for a vector
-/// that is zero or not finite.
+/// Packs the direction of a vector of any length as x | y<<8 | z<<16, signed bytes with 127 for 1. Returns 0 for a
+/// vector that is zero or not finite.
 std::uint32_t packNormal(const glm::vec3& normal);
 
 /// The position of one point in world coordinates, where every rasterizer must place it.

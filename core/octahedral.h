@@ -21,7 +21,8 @@ inline glm::vec3 decodeOctahedral(Octahedral code) {
   return glm::normalize(n);
 }
 
-/// Encodes a vector of any length above 0: takes the one of the four codes around the mapped point that decodes nearest.
+/// Encodes a vector of any length above 0: takes the one of the four codes around the mapped point that decodes
+/// nearest.
 inline Octahedral encodeOctahedral(const glm::dvec3& normal) {
   const glm::dvec3 n = normal / (std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z));
   glm::dvec2 square(n);

@@ -6,16 +6,16 @@
 
 namespace strata {
 
-/// Where an image lies in the larger picture that it is a tile of; pixels. All zero: the image is the whole picture.
+/// The place of a tile in its picture, in pixels. All values are zero for a view of a whole picture.
 struct PictureTile {
   int pictureWidth = 0, pictureHeight = 0;
-  int left = 0, top = 0;  ///< of the image's first pixel in the picture
+  int left = 0, top = 0;  ///< the tile's first pixel in the picture
 
   bool operator==(const PictureTile&) const = default;
 };
 
-/// A camera and the size of its picture, all in double so that UTM coordinates do not jitter. The frame is right-handed;
-/// the camera looks along target - eye; y of the picture points down, and row 0 is the top.
+/// A camera and the size of its picture, all in double so that UTM coordinates do not jitter. The frame is
+/// right-handed; the camera looks along target - eye; y of the picture points down, and row 0 is the top.
 struct View {
   glm::dvec3 eye{0.0, -1.0, 0.0};
   glm::dvec3 target{0.0};
@@ -24,14 +24,14 @@ struct View {
   bool orthographic = false;
   double orthographicHeight = 1.0;  ///< metres between the top and the bottom of the picture
   double nearPlane = 0.01;          ///< metres; points nearer than this are not drawn. There is no far plane
-  int width = 1920;                 ///< of the image
+  int width = 1920;                 ///< pixels of the picture, or of its tile
   int height = 1080;
-  PictureTile tile;  ///< fovY and orthographicHeight are those of the whole picture
+  PictureTile tile;  ///< for a tile, fovY and orthographicHeight are still those of the whole picture
 
   bool operator==(const View&) const = default;
 };
 
-/// The view of the whole picture that `view` shows a tile of; `view` itself where it shows all of it.
+/// The view of the whole picture that `view` shows a tile of; `view` itself if it shows all of it.
 View wholePicture(const View& view);
 /// The view of a tile of width x height pixels whose first pixel is (left, top) of `view`. A tile shows what the whole
 /// picture shows in its place, pixel for pixel.

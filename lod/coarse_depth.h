@@ -11,7 +11,7 @@
 namespace strata {
 
 /// When a surface counts as closed: while Occluder::gap covers at most this many pixels. The defaults trust the scan: a
-/// surface without a hole hides what is behind it, even from so near that the picture shows gaps between its points.
+/// surface without a hole hides everything behind it, even from so near that the picture shows gaps between its points.
 struct OcclusionOptions {
   bool enabled = true;
   double gapPixels = 256.0;            ///< for a surface that is loaded to its last point

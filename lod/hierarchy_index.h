@@ -6,7 +6,7 @@
 
 namespace strata {
 
-/// What the walk and the cache need beyond the records: 8 bytes per node, made once when a store is opened.
+/// Values that the walk and the cache need beyond the records: 8 bytes per node, made once when a store is opened.
 struct HierarchyIndex {
   std::vector<std::uint32_t> parent;  ///< index of each node's parent; kNoParent for the root
   /// Metres by which each node's contour has to be grown on all sides to hold the contours of everything below it. A

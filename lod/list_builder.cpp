@@ -14,7 +14,7 @@ constexpr float kUpgradeWeight = 0.25f;
 /// A request for a node of unknown planes asks for this many times the bytes that learnShare() expects.
 constexpr double kShareMargin = 1.02;
 
-/// Where the plane that is shown ends in the payload; 0 when positions alone are shown.
+/// The end of the plane that is shown in the payload; 0 when positions alone are shown.
 std::uint32_t shownEnd(const PlaneEnds& ends, ColourMode shown) {
   switch (shown) {
     case ColourMode::rgb:

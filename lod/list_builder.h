@@ -20,14 +20,14 @@ struct PinnedList {
   std::vector<NodeCache::Pin> pins;
 };
 
-/// What an LOD pass makes out of a selection: what to draw and what to load.
+/// The result of an LOD pass: a list to draw and requests to load.
 struct LodOutput {
   PinnedList pinned;
   std::vector<LoadRequest> requests;
 };
 
-/// Splits a selection into what is resident (a render list) and what is not (requests). LOD thread only; keeps its
-/// memory for the next pass.
+/// Splits a selection into a render list of the nodes that are resident and requests for the others. LOD thread only;
+/// keeps its memory for the next pass.
 class ListBuilder {
  public:
   struct Result {
@@ -56,7 +56,7 @@ class ListBuilder {
   std::span<const std::uint32_t> drawn() const { return drawn_; }
 
  private:
-  /// What a pass does with a wanted node.
+  /// The decision of a pass about a wanted node.
   enum class Fate : std::uint32_t {
     drawn,
     missing,  ///< it or a node above it is not resident
@@ -73,7 +73,7 @@ class ListBuilder {
    private:
     std::uint32_t bits_ = 0;
   };
-  /// A wanted node, and what there is of it.
+  /// A wanted node, and its state in the cache.
   struct WantedNode {
     const SelectedNode& selected;
     const StreamedNode* present;          ///< null when it is not resident
@@ -95,7 +95,7 @@ class ListBuilder {
   const Store& store_;
   const std::span<const std::uint32_t> parents_;
   const Precision leastPrecision_;
-  const std::uint64_t bytesAPoint_;  ///< of memory, at most
+  const std::uint64_t bytesAPoint_;  ///< bound on the memory of a point
   NodeCache& cache_;
 
   // Used by the LOD thread.

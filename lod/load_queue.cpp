@@ -73,7 +73,7 @@ LoadQueue::Iterator LoadQueue::nextTo(const LoadRequest& first, const LoadReques
   std::uint64_t nearestGap = limits.gap;
   for (Iterator request = requests_.begin(); request != requests_.end(); ++request) {
     const std::uint64_t requestEnd = request->offset + request->bytes;
-    if (request->offset < end && requestEnd > begin) continue;  // inside the range: another version of what is taken
+    if (request->offset < end && requestEnd > begin) continue;  // the range brings it already
     const std::uint64_t gap = request->offset >= end ? request->offset - end : begin - requestEnd;
     const std::uint64_t whole = std::max(end, requestEnd) - std::min(begin, request->offset);
     if (gap > nearestGap || static_cast<float>(gap) > limits.waste * static_cast<float>(request->bytes)) continue;

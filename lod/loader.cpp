@@ -123,7 +123,7 @@ void Loader::decode(const LoadRequest& request, std::span<const std::byte> bytes
   TraceScope span(lane_, "decode");
   span.count("node", request.node);
   try {
-    // The rest of a node is decoded behind what is there of it, which may have been evicted or replaced meanwhile.
+    // The rest of a node is decoded behind the part in memory, which may have been evicted or replaced in the meantime.
     const NodeCache::Data before = request.from > 0 ? state_.cache.peek(request.node) : nullptr;
     if (leadingBytes(before) != request.from) {
       state_.queue.finish(request.node);

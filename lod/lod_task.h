@@ -7,7 +7,7 @@
 
 namespace strata {
 
-/// What an LOD pass works on.
+/// The views and options that an LOD pass works on.
 struct LodTask {
   View view;
   std::optional<View> ahead;  ///< where the camera will soon be

@@ -28,7 +28,7 @@ struct NodeCacheStats {
 /// evictUntil(); Kanzok 2015, 3.2.1, item 5). At every moment:
 ///   - residentBytes <= capacityBytes
 ///   - a pinned node (one that a render list holds) is resident
-///   - a node is not evicted while a child of it is resident: what is drawn stays closed under parents
+///   - a node is not evicted while a child of it is resident, so every drawn node's parent can be drawn
 /// A node may come before its parent does. What does not fit is refused and counted.
 /// Every member may be called by any thread; none does I/O or frees node memory under the lock.
 class NodeCache {
@@ -89,7 +89,7 @@ class NodeCache {
   };
 
   Entry* find(std::uint32_t node) STRATA_REQUIRES(mutex_);         ///< null when not resident
-  Entry* parentEntry(std::uint32_t node) STRATA_REQUIRES(mutex_);  ///< of a resident node; null for the root
+  Entry* parentEntry(std::uint32_t node) STRATA_REQUIRES(mutex_);  ///< null for the root; the node is resident
   void addPin(std::uint32_t node, Entry& entry) STRATA_REQUIRES(mutex_);
   void dropPin(std::uint32_t node, Entry& entry) STRATA_REQUIRES(mutex_);
   void nowHeld(std::uint32_t node, Entry& entry) STRATA_REQUIRES(mutex_);

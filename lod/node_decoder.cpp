@@ -77,7 +77,7 @@ std::uint64_t nodeBytesBound(const NodeRecord& record, const StoreInfo& info) {
   return nodeBytesBound(record, bytesAPointBound(info));
 }
 
-/// Copies what is there of the node to `out` and returns the bytes that follow its last whole plane, old and new.
+/// Copies the node as it has been to `out`, and joins the old and new bytes that follow its last whole plane.
 std::span<const std::byte> NodeDecoder::continueFrom(const StreamedNode& before, const NodeRecord& record,
                                                      std::span<const std::byte> bytes, StreamedNode& out) {
   static_cast<NodeData&>(out) = before;

@@ -13,7 +13,7 @@
 
 namespace strata {
 
-/// The least precision that draws as well as `wanted`: planes that hold nothing for this node are not asked for.
+/// The least precision that draws as well as `wanted`: planes that are empty for this node are left out.
 Precision usefulPrecision(const NodeRecord& record, Precision wanted);
 
 /// The most bytes of memory that a point of the store's nodes takes.

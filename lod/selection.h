@@ -20,8 +20,8 @@ struct SelectionOptions {
   double minimumPixels = 1.0;              ///< a node whose longest side is shorter is left out; its parent is drawn
 
   OcclusionOptions occlusion{};  ///< how the streamer fills the coarse depth
-  /// What of the nodes is drawn, and so read. Nodes whose points are all clipped away are left out and not counted;
-  /// the clip does not cut the others.
+  /// The planes to read. Its clip leaves out nodes whose points are all clipped away, which then do not count; it does
+  /// not cut other nodes.
   Shown shown{};
   /// A node that was in view all along takes at least this long from its first point to all of them; see Fade.
   double fadeSeconds = 0.2;

@@ -133,7 +133,7 @@ void Streamer::publish(PinnedList& list) {
     std::swap(ready_, list);
     readyIsNew_ = true;
   }
-  // What comes back is an older list that no frame was drawn from, or an empty one.
+  // The swap brought back an older list that no frame has drawn, or an empty one.
   releaseList(list, lodReleased_);
   lodReleased_.clear();
 }

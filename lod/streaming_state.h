@@ -16,7 +16,7 @@
 
 namespace strata {
 
-/// What the loaders have done. Relaxed atomics: each count is read without regard to the others.
+/// Counts of the loaders' work. Relaxed atomics: each count is read without regard to the others.
 struct LoaderCounters {
   std::atomic<std::uint64_t> nodesLoaded{0}, nodesAhead{0}, pointsLoaded{0}, bytesRead{0}, reads{0}, loadsDropped{0};
 

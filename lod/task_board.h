@@ -9,8 +9,8 @@
 
 namespace strata {
 
-/// What the threads of a streamer tell each other: which task is the newest, that nodes have come or failed, and which
-/// task the last published list was made for. Any thread may call any member, except where a thread is named.
+/// The place where the threads of a streamer leave word for each other: which task is the newest, that nodes have come
+/// or failed, and which task the last list was made for. Any thread may call any member, unless a thread is named.
 class TaskBoard {
  public:
   using Clock = std::chrono::steady_clock;
@@ -52,7 +52,7 @@ class TaskBoard {
   bool viewKnown_ STRATA_GUARDED_BY(mutex_) = false;     ///< setView() has been called
   bool nodesChanged_ STRATA_GUARDED_BY(mutex_) = false;  ///< since the last pass began
   Clock::time_point nextPass_ STRATA_GUARDED_BY(mutex_) = Clock::time_point::max();
-  std::uint64_t doneGeneration_ STRATA_GUARDED_BY(mutex_) = 0;  ///< of the last published list
+  std::uint64_t doneGeneration_ STRATA_GUARDED_BY(mutex_) = 0;  ///< the task of the last published list
   bool donePending_ STRATA_GUARDED_BY(mutex_) = false;          ///< that list lacks something that can still come
   std::uint64_t events_ STRATA_GUARDED_BY(mutex_) = 0;
 };

@@ -1,19 +1,18 @@
-// What streaming costs and saves, as tables of docs/benchmarks/streaming.md (Table 3 of Kanzok 2015: strata-bench
-// --suite kanzok):
+// Measures what streaming costs and saves, for the tables of docs/benchmarks/streaming.md. Table 3 of Kanzok 2015 comes
+// from strata-bench --suite kanzok. Usage:
 //
-// streaming_bench indoors STORE [VIEWS]    with and without occlusion: random views from inside a store of
-// synthetic:room
-//
-// streaming_bench slow STORE PATH.json     frame times of a flight over disks that are instant, slow and broken; and of
-// the same pictures over the first two
-//
-// streaming_bench ahead STORE PATH.json    the same flight with and without looking ahead, from a slow disk
-//
-// streaming_bench planes STORE PATH.json   bytes read by need and in full
-//
-// streaming_bench loaders STORE            the loader's speed against plain reading
-//
-// streaming_bench open [NODES]             opening a store of so many nodes
+//   streaming_bench indoors STORE [VIEWS]
+//       random views from inside a store of synthetic:room, with and without occlusion
+//   streaming_bench slow STORE PATH.json
+//       frame times of a flight over an instant, a slow and a broken disk, and of its pictures over the first two
+//   streaming_bench ahead STORE PATH.json
+//       the same flight from a slow disk, with and without looking ahead
+//   streaming_bench planes STORE PATH.json
+//       bytes read by need and in full
+//   streaming_bench loaders STORE
+//       the loaders' speed against plain reading
+//   streaming_bench open [NODES]
+//       opening a store of so many nodes
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -65,7 +64,7 @@ struct Flight {
   double percent(double p) const { return percentile(frameMs, p); }
 };
 
-/// Where the camera is `t` seconds after the path's beginning; held at its end.
+/// The camera `t` seconds after the beginning of the path; it stays at the end.
 View viewOn(const CameraPath& path, double t) {
   return viewAt(path, path.keys.front().t + std::clamp(t, 0.0, path.duration()), kPicture.width, kPicture.height);
 }
@@ -159,7 +158,7 @@ Complete complete(const std::string& storePath, const View& view, bool occlusion
   return result;
 }
 
-/// Views of people who stand somewhere in the rooms or the corridor and look about.
+/// Views of people who look around in the rooms and the corridor.
 void indoors(const std::string& storePath, int views) {
   const Store store(storePath);
   const Box bounds = store.info().bounds;

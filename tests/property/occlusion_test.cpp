@@ -1,6 +1,6 @@
-// What occlusion culling may leave out: nothing that is seen. Against the oracle's picture of all points, where
-// surfaces count as closed only when they leave no pixel open; and against the scene that the scan was made of, where
-// they count as closed by the scan's own spacing.
+// Occlusion culling may leave out nothing that is seen. The tests compare with the oracle's picture of all points, where
+// surfaces count as closed only when they leave no pixel open, and with the scene that the scan was made of, where they
+// count as closed by the scan's own spacing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ const Scan& scanOf(const std::string& name) {
   return name == "room" ? room : city;
 }
 
-/// From a place where nothing stands, in any direction that people look.
+/// A view from a free place, in any direction that people look.
 View randomView(const Scan& scan, Random& random) {
   const Box bounds = scan.store->info().bounds;
   const glm::dvec3 origin = scan.truth->extent().origin;
@@ -149,7 +149,7 @@ TEST_P(Occlusion, NoPixelOfTheFullPictureBelongsToANodeThatWasCulled) {
   EXPECT_LE(static_cast<double>(lost), 1e-4 * static_cast<double>(covered)) << lost << " of " << covered;
 }
 
-/// Whether a point is in the image and nothing of the scene stands before it.
+/// True when a point is in the picture and nothing of the scene hides it.
 bool isSeen(const Scan& scan, const View& view, const Projection& p, const glm::dvec3& point) {
   const glm::dvec4 d(point - p.eye, 1.0);
   const double w = glm::dot(p.rowW, d);

@@ -13,7 +13,7 @@ struct Pixel {
   bool inFront;
 };
 
-/// Where a world position lands in the image.
+/// The place of a world position in the picture.
 Pixel project(const View& view, const glm::dvec3& position) {
   const Projection p = projection(view);
   const glm::dvec4 d(position - p.eye, 1.0);
