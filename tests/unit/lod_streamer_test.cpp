@@ -205,6 +205,10 @@ TEST(Streamer, ReadsOnlyWhatIsShownAndTheRestWhenThatChanges) {
   options.selection.shown.colour = ColourMode::rgb;
   const auto store = makeStore(terrain());
   Streamer streamer(store, options);
+  // From afar the root alone is read. What it needed tells the next pass how much of each other node to ask for.
+  streamer.setView(viewOfTerrain(terrain().info, 0.5, 0.3, 20000.0));
+  ASSERT_TRUE(streamer.waitUntilComplete(kLong));
+  ASSERT_EQ(streamer.stats().nodesLoaded, 1u);
   streamer.setView(lookDown());
   ASSERT_TRUE(streamer.waitUntilComplete(kLong));
   const std::uint64_t colours = streamer.stats().bytesRead;
