@@ -1,6 +1,6 @@
-// Occlusion culling may leave out nothing that is seen. The tests compare with the oracle's picture of all points, where
-// surfaces count as closed only when they leave no pixel open, and with the scene that the scan was made of, where they
-// count as closed by the scan's own spacing.
+// Occlusion culling may leave out nothing that is seen. The tests compare with the oracle's picture of all points,
+// where surfaces count as closed only when they leave no pixel open, and with the scene that the scan was made of,
+// where they count as closed by the scan's own spacing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 #include "converter/convert.h"
 #include "io/store/node_codec.h"
-#include "io/synthetic/scenes.h"
 #include "io/synthetic/scanner.h"
+#include "io/synthetic/scenes.h"
 #include "lod/coarse_depth.h"
 #include "lod/selection.h"
 #include "lod/streamed_node.h"
