@@ -4,6 +4,7 @@
 #include <random>
 
 #include "viewer/camera/camera_control.h"
+#include "viewer/camera/composition.h"
 #include "viewer/camera/dense_surface.h"
 #include "viewer/camera/path_maker.h"
 #include "viewer/camera/stills.h"
@@ -12,7 +13,7 @@ namespace strata {
 namespace {
 
 /// A flat town at UTM coordinates: ground of 400 x 200 m with blocks of houses and streets between them.
-Scene town() {
+ScanSample town() {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<glm::dvec3> points;
@@ -23,21 +24,21 @@ Scene town() {
     const double z = house ? 12.0 * std::pow(unit(random), 0.3) : 0.0;
     points.push_back({630000.0 + x, 4850000.0 + y, 100.0 + z});
   }
-  return makeScene(std::move(points));
+  return makeScanSample(std::move(points));
 }
 
 /// A sphere 2 m across.
-Scene statue() {
+ScanSample statue() {
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   std::vector<glm::dvec3> points;
   for (int i = 0; i < 20000; ++i)
     points.push_back(glm::normalize(glm::dvec3(normal(random), normal(random), normal(random))));
-  return makeScene(std::move(points));
+  return makeScanSample(std::move(points));
 }
 
 /// Floor, ceiling and four walls.
-Scene room() {
+ScanSample room() {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   std::vector<glm::dvec3> points;
@@ -47,64 +48,64 @@ Scene room() {
     p[face / 2] = face % 2;
     points.push_back(p * glm::dvec3(6.0, 5.0, 2.7));
   }
-  return makeScene(std::move(points));
+  return makeScanSample(std::move(points));
 }
 
-double shareInPicture(const Scene& scene, const View& view) {
+double shareInPicture(const ScanSample& scan, const View& view) {
   int seen = 0;
-  for (const glm::dvec3& p : scene.points) {
+  for (const glm::dvec3& p : scan.points) {
     const glm::dvec2 pixel = pixelOf(view, p);
     seen +=
         depthOf(view, p) > 0.0 && pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= view.width && pixel.y <= view.height
             ? 1
             : 0;
   }
-  return static_cast<double>(seen) / static_cast<double>(scene.points.size());
+  return static_cast<double>(seen) / static_cast<double>(scan.points.size());
 }
 
-TEST(Scene, KnowsARoomFromATownAndAStatue) {
+TEST(ScanSample, KnowsARoomFromATownAndAStatue) {
   EXPECT_TRUE(room().enclosed);
   EXPECT_FALSE(town().enclosed);
   EXPECT_FALSE(statue().enclosed);
 }
 
-TEST(Scene, LeavesAFarOutlierOutOfItsBounds) {
+TEST(ScanSample, LeavesAFarOutlierOutOfItsBounds) {
   std::vector<glm::dvec3> points = town().points;
   points.push_back({0.0, 0.0, 90000.0});
-  EXPECT_LT(makeScene(points).diagonal(), 600.0);
+  EXPECT_LT(makeScanSample(points).diagonal(), 600.0);
 }
 
-TEST(Scene, SurvivesNoPointOnePointAndOneLine) {
-  EXPECT_GT(makeScene({}).diagonal(), 0.0);
-  EXPECT_GT(makeScene({{5.0, 5.0, 5.0}}).diagonal(), 0.0);
-  const Scene line = makeScene({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}});
+TEST(ScanSample, SurvivesNoPointOnePointAndOneLine) {
+  EXPECT_GT(makeScanSample({}).diagonal(), 0.0);
+  EXPECT_GT(makeScanSample({{5.0, 5.0, 5.0}}).diagonal(), 0.0);
+  const ScanSample line = makeScanSample({{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {2.0, 0.0, 0.0}});
   for (const CameraPath& path : {orbitPath(line), flythroughPath(line), streetPath(line)})
     EXPECT_NO_THROW(parseCameraPath("p", cameraPathJson(path)));
 }
 
 TEST(Stills, AFittedViewHoldsAllAndTouchesTheEdge) {
-  for (const Scene& scene : {town(), statue(), room()})
+  for (const ScanSample& scan : {town(), statue(), room()})
     for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.7) {
-      const View view = fittedView(scene, lookingAt(azimuth, 0.5), 1920, 1080, 0.8);
-      EXPECT_EQ(shareInPicture(scene, view), 1.0);
+      const View view = fittedView(scan, lookingAt(azimuth, 0.5), 1920, 1080, 0.8);
+      EXPECT_EQ(shareInPicture(scan, view), 1.0);
       View closer = view;
       closer.eye += 0.1 * (view.target - view.eye);
-      EXPECT_LT(shareInPicture(scene, closer), 1.0);
+      EXPECT_LT(shareInPicture(scan, closer), 1.0);
     }
 }
 
 TEST(Stills, TheOverviewFillsThePictureWithAllOfTheScan) {
-  for (const Scene& scene : {town(), statue()}) {
-    const Still still = overviewStill(scene, 1920, 1080);
-    EXPECT_EQ(shareInPicture(scene, still.view), 1.0);
-    EXPECT_GT(compose(scene, still.view, still.subject).coverage, 0.25);
-    EXPECT_GT(still.view.eye.z, scene.bounds.centre().z);
+  for (const ScanSample& scan : {town(), statue()}) {
+    const Still still = overviewStill(scan, 1920, 1080);
+    EXPECT_EQ(shareInPicture(scan, still.view), 1.0);
+    EXPECT_GT(compose(scan, still.view, still.subject).coverage, 0.25);
+    EXPECT_GT(still.view.eye.z, scan.bounds.centre().z);
   }
 }
 
 TEST(Stills, TheOverviewOfARoomIsFromInside) {
-  const Scene scene = room();
-  EXPECT_TRUE(scene.bounds.contains(overviewStill(scene, 1920, 1080).view.eye));
+  const ScanSample scan = room();
+  EXPECT_TRUE(scan.bounds.contains(overviewStill(scan, 1920, 1080).view.eye));
 }
 
 TEST(Stills, PointsGetAsLargeAsTheirDistanceOnTheScreen) {
@@ -148,11 +149,11 @@ TEST(DensePlace, IsWhereTheSurfaceWasScannedDensely) {
 }
 
 TEST(PathMaker, OrbitShowsNearlyAllOfTheScanAllTheWay) {
-  for (const Scene& scene : {town(), statue()}) {
-    const CameraPath path = orbitPath(scene);
+  for (const ScanSample& scan : {town(), statue()}) {
+    const CameraPath path = orbitPath(scan);
     for (double t = 0.0; t <= path.duration(); t += 0.1) {
       const View view = viewAt(path, t, 1920, 1080);
-      EXPECT_GT(shareInPicture(scene, view), 0.99) << t;
+      EXPECT_GT(shareInPicture(scan, view), 0.99) << t;
     }
     EXPECT_EQ(path.keys.front().eye, path.keys.back().eye);
   }
@@ -161,8 +162,8 @@ TEST(PathMaker, OrbitShowsNearlyAllOfTheScanAllTheWay) {
 TEST(PathMaker, PathsOfAScanInOnePlaceCanBeFlown) {
   for (const glm::dvec3& place : {glm::dvec3(0.0), glm::dvec3(5.0, 5.0, 5.0), glm::dvec3(630000.0, 4850000.0, 100.0)})
     for (const std::size_t copies : {1u, 1000u}) {
-      const Scene scene = makeScene(std::vector<glm::dvec3>(copies, place));
-      for (const CameraPath& path : {orbitPath(scene), flythroughPath(scene), streetPath(scene)}) {
+      const ScanSample scan = makeScanSample(std::vector<glm::dvec3>(copies, place));
+      for (const CameraPath& path : {orbitPath(scan), flythroughPath(scan), streetPath(scan)}) {
         const CameraPath read = parseCameraPath("p", cameraPathJson(path));
         for (const CameraKey& key : read.keys)
           EXPECT_LT(glm::distance(key.eye, place), 10.0) << key.eye.x << " " << key.eye.y << " " << key.eye.z;
@@ -171,18 +172,18 @@ TEST(PathMaker, PathsOfAScanInOnePlaceCanBeFlown) {
 }
 
 TEST(PathMaker, FlythroughStaysAboveTheRoofsAndSeesTheTown) {
-  const Scene scene = town();
-  const CameraPath path = flythroughPath(scene);
+  const ScanSample scan = town();
+  const CameraPath path = flythroughPath(scan);
   for (double t = 0.0; t <= path.duration(); t += 0.25) {
     const View view = viewAt(path, t, 1920, 1080);
-    EXPECT_GT(view.eye.z, scene.bounds.max.z);
-    EXPECT_GT(shareInPicture(scene, view), 0.02) << t;
+    EXPECT_GT(view.eye.z, scan.bounds.max.z);
+    EXPECT_GT(shareInPicture(scan, view), 0.02) << t;
   }
 }
 
 TEST(PathMaker, StreetWalksAtEyeHeightBetweenTheHouses) {
-  const Scene scene = town();
-  const CameraPath path = streetPath(scene);
+  const ScanSample scan = town();
+  const CameraPath path = streetPath(scan);
   int inHouse = 0;
   int steps = 0;
   for (double t = 0.0; t <= path.duration(); t += 0.1, ++steps) {

@@ -38,7 +38,7 @@ int runProgram(int argc, char** argv) {
     runSuite(options->suite);
   } else if (options->command == BenchOptions::Command::makePath) {
     const Store store(options->store);
-    std::cout << cameraPathJson(makePath(options->makePath, surveyScene(store), store));
+    std::cout << cameraPathJson(makePath(options->makePath, sampleStore(store), store));
   } else {
     const BenchReport report = runBench(*options);
     if (options->json)

@@ -25,7 +25,7 @@
 namespace strata {
 namespace {
 
-constexpr double kNearShare = 1e-4;           // of the scene's diagonal, for scans smaller than a room
+constexpr double kNearShare = 1e-4;           // of the scan's diagonal, for scans smaller than a room
 constexpr double kNear = 0.01;                // metres
 constexpr double kStillPointsPerPixel = 4.0;  // leaves no pinholes
 constexpr double kWidestSpacingPx = 6.5;      // between points in a still; beyond, the camera steps back ...
@@ -292,10 +292,10 @@ Image takeStill(Still still, double farthest, DrawOptions draw, Streamer& stream
 /// The three pictures, before those of the flight.
 void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>& store, Rasterizer& rasterizer,
                 BenchReport& report) {
-  const Scene scene = surveyScene(*store);
+  const ScanSample scan = sampleStore(*store);
   StreamerOptions rich = options.streamer;
   rich.selection.pointsPerPixel = std::max(rich.selection.pointsPerPixel, kStillPointsPerPixel);
-  DrawOptions draw = drawOptionsFor(store->info(), scene.bounds, options.colour);
+  DrawOptions draw = drawOptionsFor(store->info(), scan.bounds, options.colour);
   applyDrawFlags(options.draw, draw);
   // A map of heights is read by its relief, which splats smooth away.
   if (options.draw.fill.empty()) draw.jumpFlood = draw.colour != ColourMode::elevation;
@@ -303,12 +303,12 @@ void takeStills(const BenchOptions& options, const std::shared_ptr<const Store>&
   Streamer streamer(store, rich);
   std::vector<ReportPicture> pictures;
   double farthest = 0.0;  // the overview stays where it is, each one after it nearer than the one before
-  for (const Still& still : chooseStills(scene, *store, options.size.width, options.size.height)) {
+  for (const Still& still : chooseStills(scan, *store, options.size.width, options.size.height)) {
     pictures.push_back(
         {still.name, still.name + ".png", false, takeStill(still, farthest, draw, streamer, rasterizer)});
     writePng(options.output + "/" + pictures.back().file, pictures.back().image);
     pictures.back().hash = imageHash(pictures.back().image);
-    farthest = scene.enclosed ? 0.0 : 0.7 * still.subject;
+    farthest = scan.enclosed ? 0.0 : 0.7 * still.subject;
   }
   report.pictures.insert(report.pictures.begin(), pictures.begin(), pictures.end());
 }

@@ -93,7 +93,7 @@ Line flyViews(const std::string& path, const std::vector<View>& views, bool occl
 
 std::vector<View> outdoorViews(const Store& store, const Setup& setup) {
   std::vector<View> views;
-  for (const Still& still : chooseStills(surveyScene(store), store, setup.width, setup.height))
+  for (const Still& still : chooseStills(sampleStore(store), store, setup.width, setup.height))
     views.push_back(still.view);
   return views;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "viewer/camera/composition.h"
 #include "viewer/camera/stills.h"
 #include "viewer/camera/street_search.h"
 
@@ -19,15 +20,15 @@ constexpr double kOnePlace = 1e-9;     // of the coordinates: nearer than this i
 constexpr double kBesideAPoint = 1.0;  // metres
 constexpr int kOrbitKeys = 16;
 constexpr int kFlightKeys = 9;
-constexpr double kWalkerHeight = 1.7;  // metres, or a share of the scene where that is small
+constexpr double kWalkerHeight = 1.7;  // metres, or a share of the scan where that is small
 constexpr int kPictureWidth = 1920;    // what paths are framed for
 constexpr int kPictureHeight = 1080;
 
 /// Unit vector along the longest horizontal spread of the points.
-glm::dvec2 longAxis(const Scene& scene) {
-  const glm::dvec2 centre(scene.bounds.centre());
+glm::dvec2 longAxis(const ScanSample& scan) {
+  const glm::dvec2 centre(scan.bounds.centre());
   double xx = 0.0, xy = 0.0, yy = 0.0;
-  for (const glm::dvec3& p : scene.points) {
+  for (const glm::dvec3& p : scan.points) {
     const glm::dvec2 d = glm::dvec2(p) - centre;
     xx += d.x * d.x;
     xy += d.x * d.y;
@@ -38,10 +39,10 @@ glm::dvec2 longAxis(const Scene& scene) {
 }
 
 /// Half the extent of the points along a horizontal direction.
-double reachAlong(const Scene& scene, const glm::dvec2& axis) {
+double reachAlong(const ScanSample& scan, const glm::dvec2& axis) {
   double reach = 1e-3;
-  for (const glm::dvec3& p : scene.points)
-    reach = std::max(reach, std::abs(glm::dot(glm::dvec2(p) - glm::dvec2(scene.bounds.centre()), axis)));
+  for (const glm::dvec3& p : scan.points)
+    reach = std::max(reach, std::abs(glm::dot(glm::dvec2(p) - glm::dvec2(scan.bounds.centre()), axis)));
   return reach;
 }
 
@@ -61,8 +62,8 @@ double groundAt(const HeightGrid& grid, const glm::dvec2& place) {
 }
 
 /// Eye height that works in a city, a room and around a figurine.
-double walkerHeight(const Scene& scene) {
-  return std::min(kWalkerHeight, 0.3 * std::max(scene.bounds.size().z, 0.02 * scene.diagonal()));
+double walkerHeight(const ScanSample& scan) {
+  return std::min(kWalkerHeight, 0.3 * std::max(scan.bounds.size().z, 0.02 * scan.diagonal()));
 }
 
 CameraPath circle(const glm::dvec3& target, double radius, double height) {
@@ -79,15 +80,15 @@ CameraPath circle(const glm::dvec3& target, double radius, double height) {
   return path;
 }
 
-CameraPath divePath(const Scene& scene, const Store& store) {
-  const std::vector<Still> stills = chooseStills(scene, store, kPictureWidth, kPictureHeight);
+CameraPath divePath(const ScanSample& scan, const Store& store) {
+  const std::vector<Still> stills = chooseStills(scan, store, kPictureWidth, kPictureHeight);
   const View& overview = stills[0].view;
   CameraPath path;
   path.fovY = overview.fovY;
   const auto add = [&](double share, const glm::dvec3& eye, const glm::dvec3& target) {
     path.keys.push_back({kSeconds * share, eye, target, {0.0, 0.0, 1.0}});
   };
-  const double high = scene.enclosed ? 0.0 : 0.5 * stills[0].subject;
+  const double high = scan.enclosed ? 0.0 : 0.5 * stills[0].subject;
   add(0.0, overview.eye + glm::dvec3(0.0, 0.0, high), overview.target);
   add(0.35, glm::mix(overview.eye, stills[1].view.eye, 0.4), glm::mix(overview.target, stills[1].view.target, 0.7));
   add(0.65, stills[1].view.eye, stills[1].view.target);
@@ -98,15 +99,15 @@ CameraPath divePath(const Scene& scene, const Store& store) {
 
 }  // namespace
 
-CameraPath orbitPath(const Scene& scene) {
+CameraPath orbitPath(const ScanSample& scan) {
   CameraPath path;
   path.fovY = kOrbitFovY;
-  const glm::dvec3 centre = scene.bounds.centre();
+  const glm::dvec3 centre = scan.bounds.centre();
   std::vector<View> views;
   double farthest = 0.0;
   for (int i = 0; i < kOrbitKeys; ++i) {
     const glm::dvec3 direction = lookingAt(kTau * i / kOrbitKeys, kOrbitElevation);
-    views.push_back(fittedView(scene, direction, kPictureWidth, kPictureHeight, path.fovY));
+    views.push_back(fittedView(scan, direction, kPictureWidth, kPictureHeight, path.fovY));
     farthest = std::max(farthest, glm::dot(centre - views.back().eye, direction));
   }
   // A scan in one place is looked at from beside it.
@@ -121,39 +122,39 @@ CameraPath orbitPath(const Scene& scene) {
   return path;
 }
 
-CameraPath flythroughPath(const Scene& scene) {
-  const HeightGrid grid(scene);
-  const glm::dvec2 axis = longAxis(scene);
+CameraPath flythroughPath(const ScanSample& scan) {
+  const HeightGrid grid(scan);
+  const glm::dvec2 axis = longAxis(scan);
   const glm::dvec2 across(-axis.y, axis.x);
-  const glm::dvec2 centre(scene.bounds.centre());
-  const double length = reachAlong(scene, axis);
-  const double width = reachAlong(scene, across);
+  const glm::dvec2 centre(scan.bounds.centre());
+  const double length = reachAlong(scan, axis);
+  const double width = reachAlong(scan, across);
   CameraPath path;
   for (int i = 0; i < kFlightKeys; ++i) {
     const double u = static_cast<double>(i) / (kFlightKeys - 1);
     // From before the scan to short of its end, swinging gently to both sides; inside a room from wall to wall.
-    const double along = scene.enclosed ? -0.75 + 1.1 * u : -1.35 + 2.0 * u;
+    const double along = scan.enclosed ? -0.75 + 1.1 * u : -1.35 + 2.0 * u;
     const glm::dvec2 place = centre + axis * (along * length) + across * (0.35 * width * std::sin(kTau * u));
     const glm::dvec2 ahead = centre + axis * ((along + 0.6) * length) + across * (0.15 * width * std::sin(kTau * u));
     const double clearance = length * (0.30 - 0.18 * std::sin(std::numbers::pi * u));
     const double z =
-        scene.enclosed ? scene.bounds.min.z + 0.6 * scene.bounds.size().z : topAround(grid, place, 3) + clearance;
-    const double targetZ = scene.enclosed ? scene.bounds.min.z + 0.45 * scene.bounds.size().z : groundAt(grid, ahead);
+        scan.enclosed ? scan.bounds.min.z + 0.6 * scan.bounds.size().z : topAround(grid, place, 3) + clearance;
+    const double targetZ = scan.enclosed ? scan.bounds.min.z + 0.45 * scan.bounds.size().z : groundAt(grid, ahead);
     path.keys.push_back({kSeconds * u, glm::dvec3(place, z), glm::dvec3(ahead, targetZ), {0.0, 0.0, 1.0}});
   }
   return path;
 }
 
-CameraPath streetPath(const Scene& scene) {
-  const double eyeHeight = walkerHeight(scene);
-  if (scene.tallness() > 0.5 && !scene.enclosed) {
+CameraPath streetPath(const ScanSample& scan) {
+  const double eyeHeight = walkerHeight(scan);
+  if (scan.tallness() > 0.5 && !scan.enclosed) {
     // Nothing to walk through: a walk around it, looking at its middle.
-    const glm::dvec3 size = scene.bounds.size();
+    const glm::dvec3 size = scan.bounds.size();
     const double radius = 0.5 * std::hypot(size.x, size.y) + 0.9 * size.z;
-    return circle(scene.bounds.centre(), radius, scene.bounds.min.z + eyeHeight - scene.bounds.centre().z);
+    return circle(scan.bounds.centre(), radius, scan.bounds.min.z + eyeHeight - scan.bounds.centre().z);
   }
-  const HeightGrid grid(scene);
-  const std::vector<glm::dvec3> walk = findStreet(scene, grid, longAxis(scene), eyeHeight, kFlightKeys + 1);
+  const HeightGrid grid(scan);
+  const std::vector<glm::dvec3> walk = findStreet(scan, grid, longAxis(scan), eyeHeight, kFlightKeys + 1);
   CameraPath path;
   for (std::size_t i = 0; i + 1 < walk.size(); ++i) {
     const glm::dvec3 ahead = glm::normalize(walk[i + 1] - walk[i]) * (8.0 * eyeHeight);
@@ -165,11 +166,11 @@ CameraPath streetPath(const Scene& scene) {
   return path;
 }
 
-CameraPath makePath(const std::string& kind, const Scene& scene, const Store& store) {
-  if (kind == "orbit") return orbitPath(scene);
-  if (kind == "flythrough") return flythroughPath(scene);
-  if (kind == "dive") return divePath(scene, store);
-  if (kind == "street") return streetPath(scene);
+CameraPath makePath(const std::string& kind, const ScanSample& scan, const Store& store) {
+  if (kind == "orbit") return orbitPath(scan);
+  if (kind == "flythrough") return flythroughPath(scan);
+  if (kind == "dive") return divePath(scan, store);
+  if (kind == "street") return streetPath(scan);
   throw UsageError("--make-path", "unknown path, found " + kind + " (expected orbit, flythrough, dive or street)");
 }
 

@@ -8,11 +8,11 @@ namespace strata {
 
 /// A path that suits the scan: "orbit" around all of it, "flythrough" along it above its roofs, "dive" from far above
 /// to single points, "street" at a walker's height where the ground is free. Throws UsageError for another name.
-CameraPath makePath(const std::string& kind, const Scene& scene, const Store& store);
+CameraPath makePath(const std::string& kind, const ScanSample& scan, const Store& store);
 
 /// The parts that need no store.
-CameraPath orbitPath(const Scene& scene);
-CameraPath flythroughPath(const Scene& scene);
-CameraPath streetPath(const Scene& scene);
+CameraPath orbitPath(const ScanSample& scan);
+CameraPath flythroughPath(const ScanSample& scan);
+CameraPath streetPath(const ScanSample& scan);
 
 }  // namespace strata

@@ -35,24 +35,24 @@ Box robustBounds(std::vector<glm::dvec3>& points) {
 }
 
 /// Points lie on surfaces: with n points in v occupied voxels of edge e, neighbours stand about e sqrt(v / n) apart.
-double surfaceSpacing(const Scene& scene) {
-  const double edge = std::max(scene.diagonal() / 128.0, 1e-9);
+double surfaceSpacing(const ScanSample& scan) {
+  const double edge = std::max(scan.diagonal() / 128.0, 1e-9);
   std::unordered_set<std::uint64_t> occupied;
-  for (const glm::dvec3& p : scene.points) {
-    const glm::dvec3 cell = (p - scene.bounds.min) / edge;
+  for (const glm::dvec3& p : scan.points) {
+    const glm::dvec3 cell = (p - scan.bounds.min) / edge;
     occupied.insert(static_cast<std::uint64_t>(cell.x) << 40 | static_cast<std::uint64_t>(cell.y) << 20 |
                     static_cast<std::uint64_t>(cell.z));
   }
-  return edge * std::sqrt(static_cast<double>(occupied.size()) / static_cast<double>(scene.points.size()));
+  return edge * std::sqrt(static_cast<double>(occupied.size()) / static_cast<double>(scan.points.size()));
 }
 
-bool isEnclosed(const Scene& scene) {
+bool isEnclosed(const ScanSample& scan) {
   constexpr int kSide = 24;
   std::vector<int> floorHits(kSide * kSide), ceilingHits(kSide * kSide), hits(kSide * kSide);
-  const glm::dvec3 size = glm::max(scene.bounds.size(), glm::dvec3(1e-9));
-  if (scene.tallness() < 0.08) return false;
-  for (const glm::dvec3& p : scene.points) {
-    const glm::dvec3 unit = glm::clamp((p - scene.bounds.min) / size, 0.0, 1.0);
+  const glm::dvec3 size = glm::max(scan.bounds.size(), glm::dvec3(1e-9));
+  if (scan.tallness() < 0.08) return false;
+  for (const glm::dvec3& p : scan.points) {
+    const glm::dvec3 unit = glm::clamp((p - scan.bounds.min) / size, 0.0, 1.0);
     const std::size_t cell = static_cast<std::size_t>(std::min(kSide - 1, static_cast<int>(unit.y * kSide)) * kSide +
                                                       std::min(kSide - 1, static_cast<int>(unit.x * kSide)));
     ++hits[cell];
@@ -81,43 +81,43 @@ void addPrefix(const Store& store, std::uint32_t nodeIndex, double share, std::v
 
 }  // namespace
 
-double Scene::tallness() const {
+double ScanSample::tallness() const {
   const glm::dvec3 size = bounds.size();
   return size.z / std::max(std::hypot(size.x, size.y), 1e-9);
 }
 
-Scene makeScene(std::vector<glm::dvec3> points) {
-  Scene scene;
+ScanSample makeScanSample(std::vector<glm::dvec3> points) {
+  ScanSample scan;
   if (points.empty()) points = {glm::dvec3(0.0), glm::dvec3(1.0)};
-  scene.bounds = robustBounds(points);
-  if (scene.diagonal() < 1e-6) {
-    scene.bounds.min -= glm::dvec3(0.5);
-    scene.bounds.max += glm::dvec3(0.5);
+  scan.bounds = robustBounds(points);
+  if (scan.diagonal() < 1e-6) {
+    scan.bounds.min -= glm::dvec3(0.5);
+    scan.bounds.max += glm::dvec3(0.5);
   }
-  std::erase_if(points, [&](const glm::dvec3& p) { return !scene.bounds.contains(p); });
-  scene.points = std::move(points);
-  scene.spacing = surfaceSpacing(scene);
-  scene.enclosed = isEnclosed(scene);
-  return scene;
+  std::erase_if(points, [&](const glm::dvec3& p) { return !scan.bounds.contains(p); });
+  scan.points = std::move(points);
+  scan.spacing = surfaceSpacing(scan);
+  scan.enclosed = isEnclosed(scan);
+  return scan;
 }
 
-Scene surveyScene(const Store& store) {
+ScanSample sampleStore(const Store& store) {
   const std::vector<NodeRecord>& nodes = store.hierarchy().nodes;
   std::vector<glm::dvec3> points;
   // Whole levels, so that no region is sampled more densely than another; of the last one a share of every node.
-  for (std::size_t first = 0; first < nodes.size() && points.size() < kSceneSamples;) {
+  for (std::size_t first = 0; first < nodes.size() && points.size() < kSampledPoints;) {
     const int level = NodeKey{nodes[first].key}.level();
     std::size_t end = first;
     std::uint64_t inLevel = 0;
     while (end < nodes.size() && NodeKey{nodes[end].key}.level() == level) inLevel += nodes[end++].pointCount;
-    const double share = std::min(1.0, static_cast<double>(kSceneSamples - points.size()) /
+    const double share = std::min(1.0, static_cast<double>(kSampledPoints - points.size()) /
                                            static_cast<double>(std::max<std::uint64_t>(inLevel, 1)));
     // A share of many thousand nodes would read them all for a few points each.
     if (share < 0.05 && !points.empty()) break;
     for (std::size_t i = first; i < end; ++i) addPrefix(store, static_cast<std::uint32_t>(i), share, points);
     first = end;
   }
-  return makeScene(std::move(points));
+  return makeScanSample(std::move(points));
 }
 
 LocalNode localNode(const Store& store, const glm::dvec3& place) {
@@ -138,9 +138,9 @@ LocalNode localNode(const Store& store, const glm::dvec3& place) {
   }
 }
 
-HeightGrid::HeightGrid(const Scene& scene) {
-  const glm::dvec3 size = scene.bounds.size();
-  origin_ = glm::dvec2(scene.bounds.min);
+HeightGrid::HeightGrid(const ScanSample& scan) {
+  const glm::dvec3 size = scan.bounds.size();
+  origin_ = glm::dvec2(scan.bounds.min);
   cell_ = std::max(std::max(size.x, size.y) / kCells, 1e-9);
   columns_ = std::clamp(static_cast<int>(std::ceil(size.x / cell_)), 1, kCells);
   rows_ = std::clamp(static_cast<int>(std::ceil(size.y / cell_)), 1, kCells);
@@ -148,7 +148,7 @@ HeightGrid::HeightGrid(const Scene& scene) {
   count_.assign(cells, 0);
   ground_.assign(cells, std::numeric_limits<double>::infinity());
   top_.assign(cells, -std::numeric_limits<double>::infinity());
-  for (const glm::dvec3& p : scene.points) {
+  for (const glm::dvec3& p : scan.points) {
     const glm::ivec2 cell = cellOf(glm::dvec2(p));
     const std::size_t i = index(cell.x, cell.y);
     ++count_[i];

@@ -8,6 +8,7 @@
 #include <unordered_map>
 
 #include "core/percentile.h"
+#include "viewer/camera/composition.h"
 #include "viewer/camera/dense_surface.h"
 
 namespace strata {
@@ -18,7 +19,7 @@ constexpr double kRoomFovY = 75.0 * std::numbers::pi / 180.0;
 constexpr int kDirections = 24;           // compass directions that are tried
 constexpr double kFlatElevation = 0.62;   // radians over the horizon for a landscape ...
 constexpr double kTallElevation = 0.28;   // ... and for a statue
-constexpr double kCloseRadius = 0.13;     // of the scene's diagonal
+constexpr double kCloseRadius = 0.13;     // of the scan's diagonal
 constexpr double kDetailSpacingPx = 3.5;  // between neighbouring points in the detail picture
 constexpr int kBlock = 24;                // pixels; in blocks of this the points are counted
 constexpr std::size_t kLeastInBlock = 6;  // points; fewer are an edge or the haze around one
@@ -30,8 +31,8 @@ constexpr int kLargestPoint = 2;      // pixels, for what is far away; near poin
 constexpr double kBlockedCost = 3.0;  // against coverage, when views are compared
 constexpr double kLayeringGain = 0.3;
 
-double elevationFor(const Scene& scene) {
-  const double tall = std::clamp((scene.tallness() - 0.1) / 0.5, 0.0, 1.0);
+double elevationFor(const ScanSample& scan) {
+  const double tall = std::clamp((scan.tallness() - 0.1) / 0.5, 0.0, 1.0);
   return kFlatElevation + (kTallElevation - kFlatElevation) * tall;
 }
 
@@ -60,9 +61,9 @@ struct BestView {
 };
 
 /// From an upper corner of the room, looking down at the opposite side.
-View roomView(const Scene& scene, int width, int height) {
-  const glm::dvec3 centre = scene.bounds.centre();
-  const glm::dvec3 half = 0.5 * scene.bounds.size();
+View roomView(const ScanSample& scan, int width, int height) {
+  const glm::dvec3 centre = scan.bounds.centre();
+  const glm::dvec3 half = 0.5 * scan.bounds.size();
   BestView best;
   for (int corner = 0; corner < 4; ++corner) {
     const glm::dvec2 side(corner & 1 ? 1.0 : -1.0, corner & 2 ? 1.0 : -1.0);
@@ -70,7 +71,7 @@ View roomView(const Scene& scene, int width, int height) {
       const glm::dvec3 eye = centre + glm::dvec3(side * glm::dvec2(half) * inset, half.z * 0.55);
       const glm::dvec3 target = centre + glm::dvec3(-side * glm::dvec2(half) * 0.25, -half.z * 0.35);
       const View view = viewFrom(eye, target, width, height, kRoomFovY);
-      best.offer(view, score(compose(scene, view, glm::distance(eye, target))) + 0.3 * inset);
+      best.offer(view, score(compose(scan, view, glm::distance(eye, target))) + 0.3 * inset);
     }
   }
   return *best.view;
@@ -82,9 +83,9 @@ struct Spot {
   double radius = 0.0;
 };
 
-Spot richestSpot(const Scene& scene, const Store& store) {
-  const double edge = scene.diagonal() / 80.0;
-  Spot spot{scene.bounds.centre(), kCloseRadius * scene.diagonal()};
+Spot richestSpot(const ScanSample& scan, const Store& store) {
+  const double edge = scan.diagonal() / 80.0;
+  Spot spot{scan.bounds.centre(), kCloseRadius * scan.diagonal()};
   if (edge <= 0.0) return spot;
   struct Voxel {
     glm::dvec3 sum{0.0};
@@ -92,8 +93,8 @@ Spot richestSpot(const Scene& scene, const Store& store) {
     double weight = 0.0;
   };
   std::unordered_map<std::uint64_t, Voxel> voxels;
-  for (const glm::dvec3& p : scene.points) {
-    const glm::dvec3 cell = (p - scene.bounds.min) / edge;
+  for (const glm::dvec3& p : scan.points) {
+    const glm::dvec3 cell = (p - scan.bounds.min) / edge;
     Voxel& voxel = voxels[static_cast<std::uint64_t>(cell.x) << 40 | static_cast<std::uint64_t>(cell.y) << 20 |
                           static_cast<std::uint64_t>(cell.z)];
     voxel.sum += p;
@@ -124,8 +125,8 @@ Spot richestSpot(const Scene& scene, const Store& store) {
       weight += placeWeight;
     }
     // Near the middle the neighbourhood is whole; the edge of a scan often is ragged.
-    const double outward = glm::distance(glm::dvec2(places[i].first), glm::dvec2(scene.bounds.centre())) /
-                           std::max(scene.diagonal(), 1e-9);
+    const double outward =
+        glm::distance(glm::dvec2(places[i].first), glm::dvec2(scan.bounds.centre())) / std::max(scan.diagonal(), 1e-9);
     const double value = weight * (1.0 - 0.6 * outward);
     if (value <= best) continue;
     best = value;
@@ -134,7 +135,7 @@ Spot richestSpot(const Scene& scene, const Store& store) {
   return spot;
 }
 
-bool inside(const Scene& scene, const glm::dvec3& place) { return !scene.enclosed || scene.bounds.contains(place); }
+bool inside(const ScanSample& scan, const glm::dvec3& place) { return !scan.enclosed || scan.bounds.contains(place); }
 
 /// Unit normal of a flat node's contour, or nothing.
 std::optional<glm::dvec3> surfaceNormal(const NodeRecord& node) {
@@ -155,40 +156,40 @@ std::optional<glm::dvec3> surfaceNormal(const NodeRecord& node) {
 
 }  // namespace
 
-Still overviewStill(const Scene& scene, int width, int height) {
-  if (scene.enclosed) {
-    const View view = roomView(scene, width, height);
+Still overviewStill(const ScanSample& scan, int width, int height) {
+  if (scan.enclosed) {
+    const View view = roomView(scan, width, height);
     return {"overview", view, glm::distance(view.eye, view.target)};
   }
   BestView best;
   for (int i = 0; i < kDirections; ++i) {
     const double azimuth = 2.0 * std::numbers::pi * i / kDirections;
-    const View view = fittedView(scene, lookingAt(azimuth, elevationFor(scene)), width, height, kFovY);
-    best.offer(view, score(compose(scene, view, 0.0)));
+    const View view = fittedView(scan, lookingAt(azimuth, elevationFor(scan)), width, height, kFovY);
+    best.offer(view, score(compose(scan, view, 0.0)));
   }
   return {"overview", *best.view, glm::distance(best.view->eye, best.view->target)};
 }
 
-Still closeStill(const Scene& scene, const Store& store, int width, int height) {
-  const Spot spot = richestSpot(scene, store);
-  const double fovY = scene.enclosed ? kRoomFovY : kFovY;
+Still closeStill(const ScanSample& scan, const Store& store, int width, int height) {
+  const Spot spot = richestSpot(scan, store);
+  const double fovY = scan.enclosed ? kRoomFovY : kFovY;
   const double whole = 0.85 * spot.radius / std::sin(0.5 * fovY);
   BestView best;
   for (const double share : {1.0, 0.75, 0.55})
-    for (const double elevation : {0.75 * elevationFor(scene), 0.4 * elevationFor(scene)})
+    for (const double elevation : {0.75 * elevationFor(scan), 0.4 * elevationFor(scan)})
       for (int i = 0; i < kDirections; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * i / kDirections;
         const glm::dvec3 eye = spot.centre - lookingAt(azimuth, elevation) * (whole * share);
-        if (!inside(scene, eye)) continue;
+        if (!inside(scan, eye)) continue;
         const View view = viewFrom(eye, spot.centre, width, height, fovY);
-        best.offer(view, score(compose(scene, view, whole * share)) + 0.3 * share);
+        best.offer(view, score(compose(scan, view, whole * share)) + 0.3 * share);
       }
-  if (!best.view) best.view = viewFrom(scene.bounds.centre(), spot.centre + 1e-3, width, height, fovY);
+  if (!best.view) best.view = viewFrom(scan.bounds.centre(), spot.centre + 1e-3, width, height, fovY);
   return {"close", *best.view, glm::distance(best.view->eye, best.view->target)};
 }
 
-Still detailStill(const Scene& scene, const Store& store, const Still& close, int width, int height) {
-  const DensePlace dense = densePlace(store, close.view.target, 0.7 * kCloseRadius * scene.diagonal());
+Still detailStill(const ScanSample& scan, const Store& store, const Still& close, int width, int height) {
+  const DensePlace dense = densePlace(store, close.view.target, 0.7 * kCloseRadius * scan.diagonal());
   const glm::dvec3 place = dense.centre;
   const std::optional<glm::dvec3> normal = surfaceNormal(store.hierarchy().nodes[localNode(store, place).index]);
   const double fovY = close.view.fovY;
@@ -200,37 +201,37 @@ Still detailStill(const Scene& scene, const Store& store, const Still& close, in
     for (int i = 0; i < kDirections; ++i) {
       const glm::dvec3 direction = lookingAt(2.0 * std::numbers::pi * i / kDirections, elevation);
       const glm::dvec3 eye = place - direction * distance;
-      if (!inside(scene, eye)) continue;
+      if (!inside(scan, eye)) continue;
       const View view = viewFrom(eye, place, width, height, fovY);
       const double facing = normal ? std::abs(glm::dot(*normal, direction)) : 0.5;
       // Face-on is flat and edge-on shows nothing: about 40 degrees off the normal is best.
-      best.offer(view, score(compose(scene, view, distance)) - std::abs(facing - 0.75));
+      best.offer(view, score(compose(scan, view, distance)) - std::abs(facing - 0.75));
     }
   if (!best.view) best.view = viewFrom(glm::mix(close.view.eye, place, 0.5), place, width, height, fovY);
   return {"detail", *best.view, distance};
 }
 
-std::vector<Still> chooseStills(const Scene& scene, const Store& store, int width, int height) {
-  std::vector<Still> stills{overviewStill(scene, width, height), closeStill(scene, store, width, height)};
-  stills.push_back(detailStill(scene, store, stills[1], width, height));
+std::vector<Still> chooseStills(const ScanSample& scan, const Store& store, int width, int height) {
+  std::vector<Still> stills{overviewStill(scan, width, height), closeStill(scan, store, width, height)};
+  stills.push_back(detailStill(scan, store, stills[1], width, height));
   for (Still& still : stills) still.view.nearPlane = std::min(0.01, 1e-3 * still.subject);
   return stills;
 }
 
-FrontSpacing frontSpacing(const Picture& frame, const View& view) {
+FrontSpacing frontSpacing(const Picture& picture, const View& view) {
   struct Block {
     double depth, pixels;
   };
   std::vector<Block> blocks;
   std::vector<float> depths;
-  for (int y = 0; y + kBlock <= frame.height; y += kBlock)
-    for (int x = 0; x + kBlock <= frame.width; x += kBlock) {
+  for (int y = 0; y + kBlock <= picture.height; y += kBlock)
+    for (int x = 0; x + kBlock <= picture.width; x += kBlock) {
       depths.clear();
       for (int v = 0; v < kBlock; ++v)
         for (int u = 0; u < kBlock; ++u) {
-          const std::size_t pixel =
-              static_cast<std::size_t>(y + v) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x + u);
-          if (frame.pointId[pixel] != Picture::kNoPoint) depths.push_back(frame.depth[pixel]);
+          const std::size_t pixel = static_cast<std::size_t>(y + v) * static_cast<std::size_t>(picture.width) +
+                                    static_cast<std::size_t>(x + u);
+          if (picture.pointId[pixel] != Picture::kNoPoint) depths.push_back(picture.depth[pixel]);
         }
       if (depths.size() < kLeastInBlock) continue;
       const auto tenth = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 10);

@@ -23,17 +23,17 @@ bool somethingTall(const HeightGrid& grid, int column, int row, double eyeHeight
 }
 
 /// Cost of standing in each cell: how much of it is filled between the knees and above the head.
-std::vector<double> cellCosts(const Scene& scene, const HeightGrid& grid, double eyeHeight) {
+std::vector<double> cellCosts(const ScanSample& scan, const HeightGrid& grid, double eyeHeight) {
   const std::size_t columns = static_cast<std::size_t>(grid.columns());
   std::vector<double> filled(columns * static_cast<std::size_t>(grid.rows()), 0.0);
-  for (const glm::dvec3& p : scene.points) {
+  for (const glm::dvec3& p : scan.points) {
     const glm::ivec2 cell = grid.cellOf(glm::dvec2(p));
     const double height = p.z - grid.ground(cell.x, cell.y);
     if (height > 0.3 * eyeHeight && height < 1.6 * eyeHeight)
       filled[static_cast<std::size_t>(cell.y) * columns + static_cast<std::size_t>(cell.x)] += 1.0;
   }
-  // A wall through the cell, sampled at the scene's spacing, counts as full.
-  const double full = std::max(1.0, grid.cellSize() * eyeHeight / (scene.spacing * scene.spacing));
+  // A wall through the cell, sampled at the scan's spacing, counts as full.
+  const double full = std::max(1.0, grid.cellSize() * eyeHeight / (scan.spacing * scan.spacing));
   std::vector<double> cost(filled.size());
   for (int row = 0; row < grid.rows(); ++row)
     for (int column = 0; column < grid.columns(); ++column) {
@@ -90,9 +90,9 @@ std::vector<std::size_t> cheapestWay(const HeightGrid& grid, const std::vector<d
 
 }  // namespace
 
-std::vector<glm::dvec3> findStreet(const Scene& scene, const HeightGrid& grid, const glm::dvec2& axis, double eyeHeight,
-                                   int stops) {
-  const std::vector<double> cost = cellCosts(scene, grid, eyeHeight);
+std::vector<glm::dvec3> findStreet(const ScanSample& scan, const HeightGrid& grid, const glm::dvec2& axis,
+                                   double eyeHeight, int stops) {
+  const std::vector<double> cost = cellCosts(scan, grid, eyeHeight);
   std::vector<double> along(cost.size());
   for (std::size_t i = 0; i < cost.size(); ++i)
     along[i] = glm::dot(axis, grid.centre(static_cast<int>(i) % grid.columns(), static_cast<int>(i) / grid.columns()));
@@ -111,8 +111,8 @@ std::vector<glm::dvec3> findStreet(const Scene& scene, const HeightGrid& grid, c
     way.push_back(glm::dvec3(grid.centre(column, row), grid.ground(column, row) + eyeHeight));
   }
   if (way.size() < 2) {
-    const double step = std::max(0.25 * scene.diagonal(), 1e-3);
-    const glm::dvec3 centre = scene.bounds.centre();
+    const double step = std::max(0.25 * scan.diagonal(), 1e-3);
+    const glm::dvec3 centre = scan.bounds.centre();
     way = {centre - glm::dvec3(axis * step, 0.0), centre + glm::dvec3(axis * step, 0.0)};
   }
   for (int round = 0; round < kSmoothingRounds; ++round)

@@ -7,10 +7,10 @@
 
 namespace strata {
 
-/// A walk of `stops` places from one end of the scene to the other along `axis`, `eyeHeight` metres above the ground,
+/// A walk of `stops` places from one end of the scan to the other along `axis`, `eyeHeight` metres above the ground,
 /// through cells with few obstacles at that height: the cheapest way over the grid (Dijkstra 1959), evened out.
 /// At least two different places.
-std::vector<glm::dvec3> findStreet(const Scene& scene, const HeightGrid& grid, const glm::dvec2& axis, double eyeHeight,
-                                   int stops);
+std::vector<glm::dvec3> findStreet(const ScanSample& scan, const HeightGrid& grid, const glm::dvec2& axis,
+                                   double eyeHeight, int stops);
 
 }  // namespace strata

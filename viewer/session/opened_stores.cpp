@@ -23,17 +23,17 @@ OpenedStores openStores(const std::vector<std::string>& paths) {
   return opened;
 }
 
-Scene surveyStores(const std::vector<std::shared_ptr<const Store>>& stores) {
+ScanSample sampleStores(const std::vector<std::shared_ptr<const Store>>& stores) {
   std::vector<glm::dvec3> points;
   for (const auto& store : stores) {
     try {
-      const Scene scene = surveyScene(*store);
-      points.insert(points.end(), scene.points.begin(), scene.points.end());
+      const ScanSample scan = sampleStore(*store);
+      points.insert(points.end(), scan.points.begin(), scan.points.end());
     } catch (const Error&) {  // the streamer says which nodes are damaged
       for (const auto& [a, b] : edgesOf(store->info().bounds)) points.insert(points.end(), {a, b});
     }
   }
-  return makeScene(std::move(points));
+  return makeScanSample(std::move(points));
 }
 
 std::string layerNames(const std::vector<std::string>& paths) {

@@ -18,8 +18,8 @@ struct OpenedStores {
 /// Opens what can be opened. Throws Error where that is nothing.
 OpenedStores openStores(const std::vector<std::string>& paths);
 
-/// The scene of all stores together. One with damaged nodes counts by its bounds.
-Scene surveyStores(const std::vector<std::shared_ptr<const Store>>& stores);
+/// A sample of all stores together. A store with damaged nodes is represented by the corners of its bounds.
+ScanSample sampleStores(const std::vector<std::shared_ptr<const Store>>& stores);
 
 /// "scan" of "/data/scan.strata"; of several with commas between.
 std::string layerNames(const std::vector<std::string>& paths);

@@ -48,7 +48,7 @@ class ViewerApp {
   explicit ViewerApp(const ViewerOptions& options)
       : options_(options),
         opened_(openStores(options.stores)),
-        scan_(surveyStores(opened_.stores)),
+        scan_(sampleStores(opened_.stores)),
         window_("Strata – " + layerNames(options.stores), options.size.width, options.size.height,
                 options.screenshot.empty() && options.picture.empty()),
         renderer_(opened_.stores, options, Window::getProc()),
@@ -316,7 +316,7 @@ class ViewerApp {
 
   const ViewerOptions options_;
   const OpenedStores opened_;
-  const Scene scan_;
+  const ScanSample scan_;
   std::uint64_t pointsInStores_ = 0;
   std::string layerNames_;
 
