@@ -143,6 +143,32 @@ inline Terrain makeTerrain(const TerrainOptions& options, bool withPayloads) {
   return terrain;
 }
 
+/// Adds a slice below the leaf `index`, with other points of the same cell. Its record comes last, so the keys of the
+/// records no longer ascend.
+inline Terrain addSlice(Terrain terrain, std::uint32_t index) {
+  NodeRecord slice = terrain.hierarchy.nodes[index];
+  if (!terrain.points.empty()) {
+    NodePoints points = readAll(
+        *std::make_shared<Store>(terrain.info, terrain.hierarchy, std::make_unique<MemoryBytes>(terrain.points)),
+        index);
+    for (std::int64_t& z : points.grid[2]) z += 100;
+    const EncodedNode encoded = encodeNode(points, terrain.info);
+    slice.offset = terrain.points.size();
+    slice.payloadBytes = static_cast<std::uint32_t>(encoded.payload.size());
+    slice.headBytes = encoded.headBytes;
+    slice.headChecksum = encoded.headChecksum;
+    std::memcpy(slice.drawBytes, encoded.drawBytes, sizeof slice.drawBytes);
+    terrain.points.insert(terrain.points.end(), encoded.payload.begin(), encoded.payload.end());
+  }
+  NodeRecord& first = terrain.hierarchy.nodes[index];
+  first.firstChild = static_cast<std::uint32_t>(terrain.hierarchy.nodes.size());
+  first.childMask = first.sliced = 1;
+  terrain.hierarchy.nodes.push_back(slice);
+  terrain.info.points += slice.pointCount;
+  terrain.info.nodes = terrain.hierarchy.nodes.size();
+  return terrain;
+}
+
 /// The terrain as a store; `beforeRead` as in MemoryBytes.
 inline std::shared_ptr<const Store> makeStore(const Terrain& terrain,
                                               std::function<void(std::uint64_t)> beforeRead = {}) {

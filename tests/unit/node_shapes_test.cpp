@@ -22,13 +22,6 @@ TEST(NodeShapes, AContoursEdgesLieOnItsFacesAndHaveItsSides) {
   }
 }
 
-TEST(NodeShapes, ARecordIsFoundByItsKey) {
-  const test::Terrain terrain = test::makeTerrain({.levels = 4}, false);
-  const NodeFinder finder(terrain.hierarchy);
-  for (const NodeRecord& record : terrain.hierarchy.nodes) EXPECT_EQ(finder.find(NodeKey{record.key}), &record);
-  EXPECT_EQ(finder.find(NodeKey{}.child(7)), nullptr);
-}
-
 TEST(NodeShapes, AFrustumsFarRectangleFillsThePicture) {
   for (const bool orthographic : {false, true}) {
     View view;
@@ -52,15 +45,15 @@ TEST(NodeShapes, TheCoarseDepthIsBrightWhereItIsNearAndDarkWhereItIsOpen) {
   std::vector<float> depths(16, std::numeric_limits<float>::infinity());
   depths[3] = 5.0f;
   depths[7] = 50.0f;
-  Picture frame;
-  drawCoarseDepth(depths, frame);
-  EXPECT_EQ(frame.width, 4);
-  EXPECT_EQ(frame.colour[3] & 255u, 255u);
-  EXPECT_EQ(frame.colour[7] & 255u, 70u);
-  EXPECT_LT(frame.colour[0] & 255u, 70u);
+  Picture picture;
+  drawCoarseDepth(depths, picture);
+  EXPECT_EQ(picture.width, 4);
+  EXPECT_EQ(picture.colour[3] & 255u, 255u);
+  EXPECT_EQ(picture.colour[7] & 255u, 70u);
+  EXPECT_LT(picture.colour[0] & 255u, 70u);
   depths.assign(16, std::numeric_limits<float>::infinity());
-  drawCoarseDepth(depths, frame);  // nothing hides anything
-  EXPECT_LT(frame.colour[3] & 255u, 70u);
+  drawCoarseDepth(depths, picture);  // nothing hides anything
+  EXPECT_LT(picture.colour[3] & 255u, 70u);
 }
 
 }  // namespace

@@ -6,24 +6,25 @@
 #include <limits>
 
 #include "core/error.h"
+#include "tests/support/lod_store.h"
 
 namespace strata {
 namespace {
 
-Picture emptyFrame(int width, int height) {
+Picture emptyPicture(int width, int height) {
   const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  Picture frame;
-  frame.width = width;
-  frame.height = height;
-  frame.colour.assign(pixels, 0);
-  frame.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  frame.pointId.assign(pixels, Picture::kNoPoint);
-  return frame;
+  Picture picture;
+  picture.width = width;
+  picture.height = height;
+  picture.colour.assign(pixels, 0);
+  picture.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  picture.pointId.assign(pixels, Picture::kNoPoint);
+  return picture;
 }
 
-void put(Picture& frame, int x, int y, std::uint32_t id, float depth) {
-  frame.pointId[static_cast<std::size_t>(y * frame.width + x)] = id;
-  frame.depth[static_cast<std::size_t>(y * frame.width + x)] = depth;
+void put(Picture& picture, int x, int y, std::uint32_t id, float depth) {
+  picture.pointId[static_cast<std::size_t>(y * picture.width + x)] = id;
+  picture.depth[static_cast<std::size_t>(y * picture.width + x)] = depth;
 }
 
 RenderList threeItems() {
@@ -36,15 +37,15 @@ RenderList threeItems() {
 }
 
 TEST(Pick, TheIdOfThePixelNamesItemAndPoint) {
-  Picture frame = emptyFrame(8, 8);
-  put(frame, 3, 4, 12, 5.0f);
-  const auto picked = drawnPointAt(threeItems(), frame, {3.7, 4.2}, 0);
+  Picture picture = emptyPicture(8, 8);
+  put(picture, 3, 4, 12, 5.0f);
+  const auto picked = drawnPointAt(threeItems(), picture, {3.7, 4.2}, 0);
   ASSERT_TRUE(picked);
   EXPECT_EQ(picked->item, 1u);
   EXPECT_EQ(picked->point, 2u);
   for (std::uint32_t id = 0; id < 35; ++id) {
-    put(frame, 3, 4, id, 5.0f);
-    const auto p = drawnPointAt(threeItems(), frame, {3.5, 4.5}, 0);
+    put(picture, 3, 4, id, 5.0f);
+    const auto p = drawnPointAt(threeItems(), picture, {3.5, 4.5}, 0);
     ASSERT_TRUE(p);
     constexpr std::uint32_t kFirst[] = {0, 10, 15};
     EXPECT_EQ(kFirst[p->item] + p->point, id);
@@ -52,22 +53,36 @@ TEST(Pick, TheIdOfThePixelNamesItemAndPoint) {
 }
 
 TEST(Pick, AClickBesideAPointTakesTheNearestWithinReachAndTheNearerOfTwo) {
-  Picture frame = emptyFrame(20, 20);
-  EXPECT_FALSE(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 5));
-  put(frame, 14, 10, 3, 9.0f);
-  EXPECT_FALSE(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 3));
-  EXPECT_EQ(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 4)->point, 3u);
-  put(frame, 10, 14, 4, 2.0f);
-  EXPECT_EQ(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 4)->point, 4u);
-  put(frame, 11, 10, 5, 50.0f);
-  EXPECT_EQ(drawnPointAt(threeItems(), frame, {10.5, 10.5}, 4)->point, 5u);
+  Picture picture = emptyPicture(20, 20);
+  EXPECT_FALSE(drawnPointAt(threeItems(), picture, {10.5, 10.5}, 5));
+  put(picture, 14, 10, 3, 9.0f);
+  EXPECT_FALSE(drawnPointAt(threeItems(), picture, {10.5, 10.5}, 3));
+  EXPECT_EQ(drawnPointAt(threeItems(), picture, {10.5, 10.5}, 4)->point, 3u);
+  put(picture, 10, 14, 4, 2.0f);
+  EXPECT_EQ(drawnPointAt(threeItems(), picture, {10.5, 10.5}, 4)->point, 4u);
+  put(picture, 11, 10, 5, 50.0f);
+  EXPECT_EQ(drawnPointAt(threeItems(), picture, {10.5, 10.5}, 4)->point, 5u);
 }
 
 TEST(Pick, OutsideOfThePictureOrBeyondTheListThereIsNothing) {
-  Picture frame = emptyFrame(4, 4);
-  put(frame, 0, 0, 35, 1.0f);
-  EXPECT_FALSE(drawnPointAt(threeItems(), frame, {0.5, 0.5}, 1));
-  EXPECT_FALSE(drawnPointAt(threeItems(), frame, {-20.0, 900.0}, 3));
+  Picture picture = emptyPicture(4, 4);
+  put(picture, 0, 0, 35, 1.0f);
+  EXPECT_FALSE(drawnPointAt(threeItems(), picture, {0.5, 0.5}, 1));
+  EXPECT_FALSE(drawnPointAt(threeItems(), picture, {-20.0, 900.0}, 3));
+}
+
+TEST(Pick, APointOfASliceIsReadFromThatSlice) {
+  const test::Terrain terrain = test::addSlice(test::makeTerrain({.levels = 1}, true), 0);
+  const auto store = test::makeStore(terrain);
+  ASSERT_EQ(terrain.hierarchy.nodes[0].key, terrain.hierarchy.nodes[1].key);
+  for (const std::uint32_t index : {0u, 1u}) {
+    const NodePoints points = readAll(*store, index);
+    for (const std::uint32_t point : {0u, 1u, 200u}) {
+      const glm::dvec3 steps(points.grid[0][point], points.grid[1][point], points.grid[2][point]);
+      EXPECT_EQ(lookUpPoint(*store, index, point).position, terrain.info.grid.offset + terrain.info.grid.scale * steps);
+    }
+    EXPECT_THROW(lookUpPoint(*store, index, 256), Error);
+  }
 }
 
 TEST(Pick, NumbersHaveTheDigitsOfTheGrid) {

@@ -13,22 +13,14 @@ namespace {
 
 /// A drawn node.
 struct Drawn {
-  std::uint32_t node;
+  std::uint32_t node;  ///< index of its record
   std::uint32_t points;
-  double density = 0.0;  ///< points a square metre, with those of its parents
+  double density = 0.0;  ///< points per square metre, those of its ancestors included
 };
 
-/// Index of the record with this key: records stand in breadth-first order, so keys ascend.
-std::size_t recordOf(const Hierarchy& hierarchy, std::uint64_t key) {
-  const auto found = std::lower_bound(hierarchy.nodes.begin(), hierarchy.nodes.end(), key,
-                                      [](const NodeRecord& record, std::uint64_t code) { return record.key < code; });
-  return found != hierarchy.nodes.end() && found->key == key ? static_cast<std::size_t>(found - hierarchy.nodes.begin())
-                                                             : hierarchy.nodes.size();
-}
-
-/// Whether something nearer covers all of a few pixels spread over the contour's place in the picture.
-bool hiddenIn(const Picture& frame, const View& view, const Contour& contour, double reach) {
-  constexpr int kSamples = 5;       // a side
+/// True when something nearer covers all of a few pixels spread over the rectangle that the contour has on the screen.
+bool hiddenIn(const Picture& picture, const View& view, const Contour& contour, double reach) {
+  constexpr int kSamples = 5;       // per side
   constexpr double kNearer = 0.99;  // of the contour's depth; points of the same surface do not hide it
   const Projection p = projection(view);
   double low[2] = {1e300, 1e300}, high[2] = {-1e300, -1e300}, nearest = 1e300;
@@ -53,8 +45,8 @@ bool hiddenIn(const Picture& frame, const View& view, const Contour& contour, do
   };
   for (int y = 0; y < kSamples; ++y)
     for (int x = 0; x < kSamples; ++x)
-      if (static_cast<double>(frame.depth[sample(1, y, frame.height) * static_cast<std::size_t>(frame.width) +
-                                          sample(0, x, frame.width)]) > kNearer * nearest)
+      if (static_cast<double>(picture.depth[sample(1, y, picture.height) * static_cast<std::size_t>(picture.width) +
+                                            sample(0, x, picture.width)]) > kNearer * nearest)
         return false;
   return true;
 }
@@ -62,12 +54,11 @@ bool hiddenIn(const Picture& frame, const View& view, const Contour& contour, do
 }  // namespace
 
 double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, const RenderList& list, const View& view,
-                     const Picture& frame) {
+                     const Picture& picture) {
   const ViewVolume volume(view);
   std::vector<Drawn> drawn;
   for (const RenderItem& item : list.items)
-    if (const std::size_t node = recordOf(hierarchy, item.node->key.code); node < hierarchy.nodes.size())
-      drawn.push_back({static_cast<std::uint32_t>(node), item.pointCount, 0.0});
+    if (item.index < hierarchy.nodes.size()) drawn.push_back({item.index, item.pointCount, 0.0});
   const auto before = [](const Drawn& a, std::uint32_t node) { return a.node < node; };
   std::sort(drawn.begin(), drawn.end(), [](const Drawn& a, const Drawn& b) { return a.node < b.node; });
   const auto find = [&](std::size_t end, std::uint32_t node) -> const Drawn* {
@@ -84,7 +75,7 @@ double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, co
     const ContourOnScreen screen = projectContour(contour, reach, volume);
     if (screen.extentPx < SelectionOptions{}.minimumPixels) return;
     const double spacing = screen.pixelsPerMetre * std::sqrt(screen.facing / density);
-    if (spacing > widest && !hiddenIn(frame, view, contour, reach)) widest = spacing;
+    if (spacing > widest && !hiddenIn(picture, view, contour, reach)) widest = spacing;
   };
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     Drawn& d = drawn[i];
@@ -92,7 +83,7 @@ double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, co
     if (record.pointCount == 0) continue;
     const Contour contour = contourOf(record);
     const ContourOnScreen screen = projectContour(contour, static_cast<double>(index.reach[d.node]), volume);
-    const Drawn* parent = d.node > 0 ? find(i, index.parent[d.node]) : nullptr;  // stands before its children
+    const Drawn* parent = d.node > 0 ? find(i, index.parent[d.node]) : nullptr;  // its record comes first
     d.density = (parent != nullptr ? parent->density : 0.0) +
                 d.points / (areaPerPoint(record, contour, screen) * record.pointCount);
     if (d.points < record.pointCount) see(d.node, d.density);

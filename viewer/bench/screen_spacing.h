@@ -7,13 +7,13 @@
 
 namespace strata {
 
-/// The widest distance in pixels between neighbouring points of a picture that more of the store's points would narrow:
-/// over all drawn nodes of which a part is drawn, and all children in view of drawn nodes that are not drawn
-/// themselves, 1 / sqrt(points a square metre that are drawn there) on the screen, as selectNodes() reckons both. What
-/// the picture hides does not count, nor what is shorter than a pixel. With full detail, no occlusion test and points
-/// enough in the budget at most 1 / sqrt(pointsPerPixel), but for rounding to whole points; 0 where nothing is drawn or
-/// nothing more is to be had.
+/// The widest distance in pixels between neighbouring points of a picture, wherever the store has more points than are
+/// drawn: in nodes that are drawn in part, and in children in view of drawn nodes that are not drawn themselves. The
+/// distance is 1 / sqrt(points drawn per square metre), projected to the screen as selectNodes() does. Nodes that the
+/// picture hides, or that are smaller than a pixel, do not count. With full detail, no occlusion test and a sufficient
+/// point budget the result is at most 1 / sqrt(pointsPerPixel), apart from rounding to whole points. It is 0 when
+/// nothing is drawn or when the store has no more points.
 double widestSpacing(const Hierarchy& hierarchy, const HierarchyIndex& index, const RenderList& list, const View& view,
-                     const Picture& frame);
+                     const Picture& picture);
 
 }  // namespace strata

@@ -10,7 +10,7 @@
 namespace strata {
 namespace {
 
-/// Of a box given by its corner with bits of i as signs.
+/// The edges of a box whose corner number i is corner(i): bit k of i says on which side of axis k it lies.
 template <typename Corner>
 std::vector<Edge> boxEdges(Corner corner) {
   std::vector<Edge> edges;
@@ -59,20 +59,10 @@ std::vector<Edge> frustumEdges(const View& view, double depth) {
   return edges;
 }
 
-NodeFinder::NodeFinder(const Hierarchy& hierarchy) : hierarchy_(hierarchy) {
-  byKey_.reserve(hierarchy.nodes.size());
-  for (std::uint32_t i = 0; i < hierarchy.nodes.size(); ++i) byKey_.emplace(hierarchy.nodes[i].key, i);
-}
-
-const NodeRecord* NodeFinder::find(NodeKey key) const {
-  const auto found = byKey_.find(key.code);
-  return found == byKey_.end() ? nullptr : &hierarchy_.nodes[found->second];
-}
-
-void drawCoarseDepth(std::span<const float> depths, Picture& frame) {
+void drawCoarseDepth(std::span<const float> depths, Picture& picture) {
   const int side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(depths.size()))));
-  frame.width = frame.height = side;
-  frame.colour.assign(depths.size(), packColour(24, 26, 30));
+  picture.width = picture.height = side;
+  picture.colour.assign(depths.size(), packColour(24, 26, 30));
   double nearest = std::numeric_limits<double>::infinity(), farthest = 0.0;
   for (const float depth : depths)
     if (std::isfinite(depth) && depth > 0.0f) {
@@ -84,7 +74,7 @@ void drawCoarseDepth(std::span<const float> depths, Picture& frame) {
     if (!std::isfinite(depths[i]) || !(depths[i] > 0.0f)) continue;
     const double t = 1.0 - std::log(static_cast<double>(depths[i]) / nearest) / span;
     const int grey = 70 + static_cast<int>(std::lround(185.0 * std::clamp(t, 0.0, 1.0)));
-    frame.colour[i] = packColour(grey, grey, grey);
+    picture.colour[i] = packColour(grey, grey, grey);
   }
 }
 

@@ -20,42 +20,34 @@ std::string shortNumber(double value) {
   return text;
 }
 
-/// The nodes with this key: one, or a chain of them where a cell holds more points than a node.
-std::vector<std::uint32_t> nodesOf(const Hierarchy& hierarchy, NodeKey key) {
-  std::vector<std::uint32_t> found;
-  for (std::uint32_t i = 0; i < hierarchy.nodes.size(); ++i)
-    if (hierarchy.nodes[i].key == key.code) found.push_back(i);
-  return found;
-}
-
 }  // namespace
 
-std::optional<glm::ivec2> drawnPixelAt(const Picture& frame, const glm::dvec2& pixel, int reach) {
+std::optional<glm::ivec2> drawnPixelAt(const Picture& picture, const glm::dvec2& pixel, int reach) {
   const int column = static_cast<int>(std::floor(pixel.x));
   const int row = static_cast<int>(std::floor(pixel.y));
   std::optional<glm::ivec2> best;
   int bestDistance = reach * reach + 1;
   float bestDepth = std::numeric_limits<float>::infinity();
-  for (int y = std::max(0, row - reach); y <= std::min(frame.height - 1, row + reach); ++y)
-    for (int x = std::max(0, column - reach); x <= std::min(frame.width - 1, column + reach); ++x) {
+  for (int y = std::max(0, row - reach); y <= std::min(picture.height - 1, row + reach); ++y)
+    for (int x = std::max(0, column - reach); x <= std::min(picture.width - 1, column + reach); ++x) {
       const std::size_t at =
-          static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x);
-      if (frame.pointId[at] == Picture::kNoPoint) continue;
+          static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) + static_cast<std::size_t>(x);
+      if (picture.pointId[at] == Picture::kNoPoint) continue;
       const int distance = (x - column) * (x - column) + (y - row) * (y - row);
-      if (distance > bestDistance || (distance == bestDistance && frame.depth[at] >= bestDepth)) continue;
+      if (distance > bestDistance || (distance == bestDistance && picture.depth[at] >= bestDepth)) continue;
       bestDistance = distance;
-      bestDepth = frame.depth[at];
+      bestDepth = picture.depth[at];
       best = {x, y};
     }
   return best;
 }
 
-std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Picture& frame, const glm::dvec2& pixel,
+std::optional<DrawnPoint> drawnPointAt(const RenderList& list, const Picture& picture, const glm::dvec2& pixel,
                                        int reach) {
-  const auto at = drawnPixelAt(frame, pixel, reach);
+  const auto at = drawnPixelAt(picture, pixel, reach);
   if (!at) return std::nullopt;
-  std::uint32_t id = frame.pointId[static_cast<std::size_t>(at->y) * static_cast<std::size_t>(frame.width) +
-                                   static_cast<std::size_t>(at->x)];
+  std::uint32_t id = picture.pointId[static_cast<std::size_t>(at->y) * static_cast<std::size_t>(picture.width) +
+                                     static_cast<std::size_t>(at->x)];
   for (std::size_t i = 0; i < list.items.size(); ++i) {
     if (id < list.items[i].pointCount) return DrawnPoint{i, id};
     id -= list.items[i].pointCount;
@@ -83,33 +75,24 @@ std::string attributeText(const Attribute& attribute, const std::byte* value) {
   return text;
 }
 
-PickedPoint lookUpPoint(const Store& store, NodeKey node, std::uint32_t point, const glm::dvec3& drawnAt) {
+PickedPoint lookUpPoint(const Store& store, std::uint32_t index, std::uint32_t point) {
   const StoreInfo& info = store.info();
-  double nearest = std::numeric_limits<double>::infinity();
+  const std::string node = NodeKey{store.hierarchy().nodes[index].key}.text();
+  const NodePoints points = readAll(store, index);
+  if (point >= points.count()) throw Error(store.path(), "node " + node + " has no point " + std::to_string(point));
   PickedPoint picked;
-  for (const std::uint32_t index : nodesOf(store.hierarchy(), node)) {
-    const NodePoints points = readAll(store, index);
-    if (point >= points.count()) continue;
-    const glm::dvec3 steps(points.grid[0][point], points.grid[1][point], points.grid[2][point]);
-    const glm::dvec3 position = info.grid.offset + info.grid.scale * steps;
-    const double distance = glm::distance(position, drawnAt);
-    if (distance >= nearest) continue;
-    nearest = distance;
-    picked = {};
-    picked.position = position;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (axis > 0) picked.coordinates.push_back(' ');
-      picked.coordinates += gridNumber(position[axis], info.grid.scale[axis]);
-    }
-    const std::byte* record = points.attributes.data() + point * info.layout.stride();
-    const std::vector<Attribute>& attributes = info.layout.attributes();
-    for (std::size_t a = 0; a < attributes.size(); ++a)
-      if (!attributes[a].isInternal())
-        picked.facts.emplace_back(attributes[a].name, attributeText(attributes[a], record + info.layout.offset(a)));
-    picked.facts.emplace_back("node", node.text() + ", point " + std::to_string(point));
+  const glm::dvec3 steps(points.grid[0][point], points.grid[1][point], points.grid[2][point]);
+  picked.position = info.grid.offset + info.grid.scale * steps;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis > 0) picked.coordinates.push_back(' ');
+    picked.coordinates += gridNumber(picked.position[axis], info.grid.scale[axis]);
   }
-  if (!std::isfinite(nearest))
-    throw Error(store.path(), "node " + node.text() + " has no point " + std::to_string(point));
+  const std::byte* record = points.attributes.data() + point * info.layout.stride();
+  const std::vector<Attribute>& attributes = info.layout.attributes();
+  for (std::size_t a = 0; a < attributes.size(); ++a)
+    if (!attributes[a].isInternal())
+      picked.facts.emplace_back(attributes[a].name, attributeText(attributes[a], record + info.layout.offset(a)));
+  picked.facts.emplace_back("node", node + ", point " + std::to_string(point));
   picked.facts.emplace_back("store", store.path());
   if (info.sources.size() == 1) picked.facts.emplace_back("source", info.sources.front().path);
   return picked;

@@ -50,18 +50,15 @@ void InspectorPanel::drawOver(const Layers& layers, const RenderList& list, cons
 }
 
 void InspectorPanel::drawNodes(const Layers& layers, const RenderList& list, const View& view) {
-  finders_.resize(layers.stores().size());
   for (std::size_t i = 0; i < std::min(list.items.size(), kMostNodes); ++i) {
-    const std::size_t s = layers.indexOfItem(i);
-    const Store& store = *layers.stores()[s];
-    if (finders_[s] == nullptr) finders_[s] = std::make_unique<NodeFinder>(store.hierarchy());
-    const NodeKey key = list.items[i].node->key;
+    const Store& store = *layers.stores()[layers.indexOfItem(i)];
+    const NodeRecord& record = store.hierarchy().nodes[list.items[i].index];
+    const NodeKey key{record.key};
     if (cubes_)
       for (const auto& [a, b] : edgesOf(nodeCube(key, store.info().rootCube())))
         overlayLine(view, a, b, levelColour(key.level()), 1.0f);
-    const NodeRecord* record = contours_ ? finders_[s]->find(key) : nullptr;
-    if (record == nullptr) continue;
-    for (const auto& [a, b] : contourEdges(*record)) overlayLine(view, a, b, contourColour(*record), 1.0f);
+    if (contours_)
+      for (const auto& [a, b] : contourEdges(record)) overlayLine(view, a, b, contourColour(record), 1.0f);
   }
 }
 

@@ -1,5 +1,4 @@
 #pragma once
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,7 +31,6 @@ class InspectorPanel {
 
   bool frozen_ = false, cubes_ = false, contours_ = false, depth_ = false;
   std::optional<View> held_;
-  std::vector<std::unique_ptr<NodeFinder>> finders_;  ///< by store; made when they are first needed
   std::vector<float> depths_;
   Picture depthPicture_;
   PictureTexture texture_;

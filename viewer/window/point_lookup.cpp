@@ -6,9 +6,8 @@
 
 namespace strata {
 
-void PointLookup::ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point,
-                      const glm::dvec3& drawnAt) {
-  waiting_.push_back({std::move(store), node, point, drawnAt});
+void PointLookup::ask(std::shared_ptr<const Store> store, std::uint32_t index, std::uint32_t point) {
+  waiting_.push_back({std::move(store), index, point});
   if (!pending()) askNext();
 }
 
@@ -17,7 +16,7 @@ void PointLookup::askNext() {
   answer_ = std::async(std::launch::async, [question = std::move(waiting_.front())] {
     Answer answer;
     try {
-      answer.point = lookUpPoint(*question.store, question.node, question.point, question.drawnAt);
+      answer.point = lookUpPoint(*question.store, question.index, question.point);
     } catch (const std::exception& error) {
       answer.error = error.what();
     }

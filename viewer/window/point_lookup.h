@@ -18,8 +18,8 @@ class PointLookup {
     std::string error;  ///< empty when all went well
   };
 
-  /// Asks for the point number `point` of a node, which was drawn at `drawnAt`.
-  void ask(std::shared_ptr<const Store> store, NodeKey node, std::uint32_t point, const glm::dvec3& drawnAt);
+  /// Asks for the point number `point` of the node whose record has this index in the store's hierarchy.
+  void ask(std::shared_ptr<const Store> store, std::uint32_t index, std::uint32_t point);
   /// True while questions are unanswered.
   bool pending() const { return answer_.valid(); }
   /// The next answer, once it has come; for once in each frame. Never waits.
@@ -28,9 +28,8 @@ class PointLookup {
  private:
   struct Question {
     std::shared_ptr<const Store> store;
-    NodeKey node;
+    std::uint32_t index;
     std::uint32_t point;
-    glm::dvec3 drawnAt;
   };
   void askNext();
 

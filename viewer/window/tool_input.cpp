@@ -61,9 +61,8 @@ std::string ToolInput::use(ToolsState& tools, const WindowInput& input, const Vi
   if (!input.mouse.dragging) tools.clip.release();
   if (input.mouse.clicked && !onHandle && seen.list != nullptr) {
     if (const auto point = drawnPointAt(*seen.list, seen.picture, input.cursor, kClickReach)) {
-      const NodeData& node = *seen.list->items[point->item].node;
-      lookup_.ask(seen.layers.stores()[seen.layers.indexOfItem(point->item)], node.key, point->point,
-                  pointUnder(view, seen.picture, input.cursor).value_or(node.origin));
+      lookup_.ask(seen.layers.stores()[seen.layers.indexOfItem(point->item)], seen.list->items[point->item].index,
+                  point->point);
     }
   }
   std::string error;
