@@ -155,7 +155,7 @@ progressive() {
   printf '\nAlong the flythrough of red_rocks:\n\n'
   progressive_flight "$folder/red_rocks.strata" "$folder/red_rocks_flythrough.json" "${flight[@]}"
 }
-suite() { quietly strata-bench --suite "$1" --suite-scale "$2"; }
+suite() { quietly paper_suites --suite "$1" --suite-scale "$2"; }
 kanzok() { suite kanzok "$KANZOK_SCALE"; }
 schuetz() { suite schuetz "$SCALE"; }
 guenther() { suite guenther "$SCALE"; }

@@ -17,7 +17,7 @@
 #include "render/create_rasterizer.h"
 #include "render/progressive/progressive_rasterizer.h"
 #include "render/stopwatch.h"
-#include "viewer/bench/suite_clouds.h"
+#include "tests/bench/suites/clouds.h"
 
 namespace strata::bench {
 namespace {

@@ -1,5 +1,5 @@
 // Measures what streaming costs and saves, for the tables of docs/benchmarks/streaming.md. Table 3 of Kanzok 2015 comes
-// from strata-bench --suite kanzok. Usage:
+// from paper_suites --suite kanzok. Usage:
 //
 //   streaming_bench indoors STORE [VIEWS]
 //       random views from inside a store of synthetic:room, with and without occlusion

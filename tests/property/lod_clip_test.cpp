@@ -3,12 +3,12 @@
 
 #include <map>
 
-#include "core/make_node.h"
 #include "lod/hierarchy_index.h"
 #include "lod/selection.h"
 #include "lod/streamer.h"
 #include "render/create_rasterizer.h"
 #include "tests/support/lod_store.h"
+#include "tests/support/make_node.h"
 #include "tests/support/random.h"
 
 namespace strata {

@@ -6,11 +6,11 @@
 #include <random>
 #include <vector>
 
-#include "core/make_node.h"
 #include "core/random.h"
 #include "io/store/store.h"
 #include "lod/streamed_node.h"
 #include "tests/support/lod_store.h"
+#include "tests/support/make_node.h"
 
 namespace strata::test {
 

@@ -5,7 +5,7 @@
 #include <glm/gtc/constants.hpp>
 #include <random>
 
-#include "core/make_node.h"
+#include "tests/support/make_node.h"
 
 namespace strata::test {
 namespace {

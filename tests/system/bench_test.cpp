@@ -407,7 +407,7 @@ TEST_F(Bench, EachSuitePrintsItsTablesBesideThePapers) {
   for (const Suite& suite : {Suite{"kanzok", "1e-4", 24, {"GTX 680"}}, Suite{"schuetz", "2e-4", 40, {"RTX 3090"}},
                              Suite{"guenther", "2e-4", 14, {"HD 7970"}}}) {
     const Finished done = runProgram(
-        "strata-bench", {"--suite", suite.name, "--suite-scale", suite.scale, "--size", "160x90", "--backend", "cpu"});
+        "paper_suites", {"--suite", suite.name, "--suite-scale", suite.scale, "--size", "160x90", "--backend", "cpu"});
     ASSERT_EQ(done.exitCode, 0) << done.err;
     const auto rows = tableRows(done.out);
     EXPECT_GE(rows.size(), suite.rows) << done.out;
@@ -420,8 +420,9 @@ TEST_F(Bench, EachSuitePrintsItsTablesBesideThePapers) {
 }
 
 TEST_F(Bench, ASuiteTakesNoStore) {
-  expectUsageError(runProgram("strata-bench", {city().string(), "--suite", "kanzok"}));
-  expectUsageError(runProgram("strata-bench", {"--suite", "nobody"}));
+  expectUsageError(runProgram("paper_suites", {city().string(), "--suite", "kanzok"}));
+  expectUsageError(runProgram("paper_suites", {"--suite", "nobody"}));
+  expectUsageError(runProgram("paper_suites", {}));
 }
 
 }  // namespace

@@ -34,9 +34,7 @@ int runProgram(int argc, char** argv) {
   const std::optional<BenchOptions> options = parseBenchOptions(argc, argv);
   if (!options) return 0;
   if (options->command == BenchOptions::Command::compare) return compare(*options);
-  if (options->command == BenchOptions::Command::suite) {
-    runSuite(options->suite);
-  } else if (options->command == BenchOptions::Command::makePath) {
+  if (options->command == BenchOptions::Command::makePath) {
     const Store store(options->store);
     std::cout << cameraPathJson(makePath(options->makePath, sampleStore(store), store));
   } else {

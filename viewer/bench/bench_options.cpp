@@ -24,15 +24,9 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
   app.add_option("--path", o.path, "camera path to play, JSON");
   app.add_option("--make-path", o.makePath, "print a camera path: orbit, flythrough, dive or street")
       ->check(CLI::IsMember({"orbit", "flythrough", "dive", "street"}));
-  app.add_option("--suite", o.suite.name, "print a paper's tables, measured here: kanzok, schuetz or guenther")
-      ->check(CLI::IsMember({"kanzok", "schuetz", "guenther"}));
-  app.add_option("--suite-scale", o.suite.scale,
-                 "share of the paper's numbers of points; where not given, 1 on a GPU and 0.02 without")
-      ->check(CLI::Range(1e-6, 10.0));
   app.add_flag("--stills", o.stills, "write overview.png, close.png and detail.png");
   app.add_option("-o,--output", o.output, "folder for the report and the pictures");
-  app.add_option("--backend", raw.backend, backendChoices())
-      ->capture_default_str();
+  app.add_option("--backend", raw.backend, backendChoices())->capture_default_str();
   app.add_option("--size", raw.size, "of the picture, pixels")->capture_default_str();
   app.add_option("--point-budget", o.streamer.selection.pointBudget, "most points in a frame")
       ->check(CLI::Range(std::uint64_t{1}, SelectionOptions::kMaxPointBudget))
@@ -67,11 +61,6 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
 }
 
 void checkRun(const BenchOptions& o) {
-  if (!o.suite.name.empty()) {
-    if (!o.store.empty() || !o.path.empty() || !o.makePath.empty() || o.stills)
-      throw UsageError("--suite makes its own scans: neither a store nor --path, --make-path or --stills go with it");
-    return;
-  }
   if (o.store.empty()) throw UsageError("NAME.strata is missing (see --help)");
   if (!o.makePath.empty()) return;
   if (o.path.empty() && !o.stills) throw UsageError("nothing to do: --path, --stills or --make-path is missing");
@@ -121,12 +110,6 @@ std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv)
     checkRun(options);
     options.settle = options.settle || !options.video.empty();
     if (!options.makePath.empty()) options.command = BenchOptions::Command::makePath;
-    if (!options.suite.name.empty()) {
-      options.command = BenchOptions::Command::suite;
-      options.suite.folder = options.output;
-      options.suite.backend = options.backend;
-      if (app.get_option("--size")->count() > 0) options.suite.size = options.size;
-    }
   }
   return options;
 }

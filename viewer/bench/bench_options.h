@@ -7,7 +7,6 @@
 #include "core/draw_options.h"
 #include "lod/streamer.h"
 #include "render/create_rasterizer.h"
-#include "viewer/bench/suite.h"
 #include "viewer/session/draw_flags.h"
 #include "viewer/session/drawing.h"
 #include "viewer/session/progressive_flags.h"
@@ -16,7 +15,7 @@ namespace strata {
 
 /// The command line of strata-bench.
 struct BenchOptions {
-  enum class Command { run, makePath, compare, suite };
+  enum class Command { run, makePath, compare };
 
   Command command = Command::run;
   std::string store;
@@ -39,8 +38,6 @@ struct BenchOptions {
   int screenshotEvery = 0;  ///< frames; 0 = none
   std::string video;        ///< file for a film of the flight; empty = none
   bool json = false;
-
-  SuiteOptions suite;
 
   std::string reportA, reportB;                                ///< compare: folders or report.json files
   std::string comparison;                                      ///< compare: HTML file; empty = none

@@ -1,23 +1,19 @@
-#include "viewer/bench/suite_clouds.h"
+#include "tests/bench/suites/clouds.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
-#include "core/make_node.h"
+#include "core/random.h"
 #include "render/thread_pool.h"
+#include "tests/support/make_node.h"
 
 namespace strata::suite {
 namespace {
 
 constexpr double kGridStep = 0.001;  ///< metres
 
-double randomOf(std::uint64_t i) {  // splitmix64
-  i += 0x9e3779b97f4a7c15u;
-  i = (i ^ i >> 30) * 0xbf58476d1ce4e5b9u;
-  i = (i ^ i >> 27) * 0x94d049bb133111ebu;
-  return static_cast<double>((i ^ i >> 31) >> 11) * 0x1p-53;
-}
+double randomOf(std::uint64_t i) { return unitInterval(splitMix64(i)); }
 
 std::uint64_t evenBits(std::uint64_t v) {
   v &= 0x5555555555555555u;

@@ -1,4 +1,4 @@
-#include "core/make_node.h"
+#include "tests/support/make_node.h"
 
 #include <algorithm>
 #include <bit>

@@ -10,16 +10,18 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/image.h"
 #include "core/log.h"
 #include "core/percentile.h"
 #include "io/file/text_file.h"
 #include "lod/streamer.h"
+#include "tests/bench/suites/measure.h"
+#include "tests/bench/suites/suites.h"
 #include "viewer/bench/measures.h"
 #include "viewer/bench/page_cache.h"
-#include "viewer/bench/suite_draw.h"
-#include "viewer/bench/suite_parts.h"
 #include "viewer/camera/stills.h"
 #include "viewer/session/converter_program.h"
+#include "viewer/session/drawing.h"
 
 namespace strata::suite {
 namespace {

@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <random>
 
-#include "viewer/bench/suite_clouds.h"
-#include "viewer/bench/suite_draw.h"
-#include "viewer/bench/suite_parts.h"
+#include "tests/bench/suites/clouds.h"
+#include "tests/bench/suites/measure.h"
+#include "tests/bench/suites/suites.h"
 
 namespace strata::suite {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "render/create_rasterizer.h"
 #include "render/gpu/compute_rasterizer.h"
-#include "viewer/bench/suite.h"
+#include "tests/bench/suites/suites.h"
 
 namespace strata::suite {
 

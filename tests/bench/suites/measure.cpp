@@ -1,4 +1,4 @@
-#include "viewer/bench/suite_draw.h"
+#include "tests/bench/suites/measure.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/readable.h"
 #include "render/gl/gl_functions.h"
+#include "viewer/session/drawing.h"
 
 namespace strata::suite {
 namespace {
@@ -45,8 +46,8 @@ Setup setUp(const SuiteOptions& options, int width, int height) {
   setup.software = setup.ours == "cpu" || isSoftware(setup.device);
   setup.scale = options.scale > 0.0 ? options.scale : setup.software ? kSoftwareScale : 1.0;
   if (setup.software) setup.frames = kSoftwareFrames;
-  setup.width = options.size.width > 0 ? options.size.width : width;
-  setup.height = options.size.height > 0 ? options.size.height : height;
+  setup.width = options.width > 0 ? options.width : width;
+  setup.height = options.height > 0 ? options.height : height;
   if (setup.scale < kSmallScale) setup.nodePoints = 5 * Batch::kMaxPoints;
   return setup;
 }
