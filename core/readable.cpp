@@ -36,4 +36,10 @@ std::string readableMs(double ms) {
   return std::abs(ms) >= 1000.0 ? threeDigits(ms / 1000.0) + " s" : threeDigits(ms) + " ms";
 }
 
+std::string grouped(std::uint64_t count) {
+  std::string digits = std::to_string(count);
+  for (std::size_t at = digits.size(); at > 3;) digits.insert(at -= 3, 1, ' ');
+  return digits;
+}
+
 }  // namespace strata

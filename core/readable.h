@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <string>
 
 namespace strata {
@@ -9,5 +10,7 @@ std::string readableCount(double value);
 std::string readableBytes(double bytes);
 /// A time with three digits: "8.31 ms", "2.40 s".
 std::string readableMs(double ms);
+/// All digits of a count in groups of three: "1 234 567".
+std::string grouped(std::uint64_t count);
 
 }  // namespace strata

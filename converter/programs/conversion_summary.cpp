@@ -10,7 +10,7 @@
 
 #include "converter/control.h"
 #include "converter/journal/disk_room.h"
-#include "core/program.h"
+#include "core/readable.h"
 
 namespace strata {
 namespace {

@@ -14,7 +14,7 @@
 #include "converter/programs/progress_display.h"
 #include "converter/survey/sampled_source.h"
 #include "core/error.h"
-#include "core/program.h"
+#include "core/readable.h"
 #include "io/open_scans.h"
 #include "io/store/store.h"
 

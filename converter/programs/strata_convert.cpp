@@ -8,12 +8,14 @@
 #include <cstdio>
 
 #include "converter/convert.h"
-#include "converter/programs/command_line.h"
 #include "converter/programs/conversion_summary.h"
 #include "converter/programs/plan.h"
 #include "converter/programs/progress_display.h"
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/command_line.h"
+#include "core/program/exit_code.h"
+#include "core/program/stop_signal.h"
+#include "core/version.h"
 
 namespace strata {
 namespace {
@@ -100,6 +102,7 @@ int run(int argc, char** argv) {
                  "seconds between two lines of progress where stderr is no terminal")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
+  app.set_version_flag("--version", version());
   if (!parseCommandLine(app, argc, argv)) return 0;
   if (!plan && app.count("--output") == 0) throw UsageError("--output is required");
   options.lodColour = lodColour == "average" ? LodColour::average : LodColour::first;
@@ -146,10 +149,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace strata
 
-int main(int argc, char** argv) {
-  try {
-    return strata::run(argc, argv);
-  } catch (const std::exception& failure) {
-    return strata::reportFailure(failure);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::run, argc, argv); }

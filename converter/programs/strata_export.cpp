@@ -3,9 +3,12 @@
 #include <filesystem>
 #include <optional>
 
-#include "converter/programs/command_line.h"
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/command_line.h"
+#include "core/program/exit_code.h"
+#include "core/program/stop_signal.h"
+#include "core/readable.h"
+#include "core/version.h"
 #include "io/open_scans.h"
 #include "io/scan/scan_writer.h"
 #include "io/store/node_codec.h"
@@ -90,6 +93,7 @@ int run(int argc, char** argv) {
   app.add_option("--format", lasFormat, "LAS point format; the source's own unless given")
       ->check(CLI::IsMember({0, 1, 2, 3, 6, 7, 8}));
   app.add_flag("--force", force, "replace an existing file");
+  app.set_version_flag("--version", version());
   if (!parseCommandLine(app, argc, argv)) return 0;
   const std::string extension = scanExtension(output);
   if (extension != ".las" && extension != ".laz" && extension != ".ply")
@@ -120,10 +124,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace strata
 
-int main(int argc, char** argv) {
-  try {
-    return strata::run(argc, argv);
-  } catch (const std::exception& failure) {
-    return strata::reportFailure(failure);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::run, argc, argv); }

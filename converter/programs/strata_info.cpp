@@ -2,9 +2,11 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "converter/programs/command_line.h"
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/command_line.h"
+#include "core/program/exit_code.h"
+#include "core/readable.h"
+#include "core/version.h"
 #include "io/store/plane_sizes.h"
 #include "io/store/store.h"
 #include "io/store/verify.h"
@@ -76,6 +78,7 @@ int run(int argc, char** argv) {
   app.add_option("STORE", path, "NAME.strata")->required();
   app.add_flag("--json", json, "print one JSON object as the last line");
   app.add_flag("--verify", verify, "read every byte and check it");
+  app.set_version_flag("--version", version());
   if (!parseCommandLine(app, argc, argv)) return 0;
   const Store store(path);
   Json description = describe(store);
@@ -101,10 +104,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace strata
 
-int main(int argc, char** argv) {
-  try {
-    return strata::run(argc, argv);
-  } catch (const std::exception& failure) {
-    return strata::reportFailure(failure);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::run, argc, argv); }

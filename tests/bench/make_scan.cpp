@@ -10,7 +10,7 @@
 #include <span>
 
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/exit_code.h"
 #include "io/file/output_file.h"
 #include "io/open_scans.h"
 #include "io/scan/point_source.h"
@@ -121,10 +121,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace strata
 
-int main(int argc, char** argv) {
-  try {
-    return strata::run(argc, argv);
-  } catch (const std::exception& failure) {
-    return strata::reportFailure(failure);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::run, argc, argv); }

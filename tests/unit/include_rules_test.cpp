@@ -29,6 +29,7 @@ struct WingRule {
 /// A wing is a folder. The three files in kTops form wings of their own: each lies beside the wings that it joins.
 const std::map<std::string_view, WingRule> kRules{
     {"core", {{}, {"spdlog", "PNG"}}},
+    {"core/program", {{"core"}, {"POSIX", "CLI11"}}},
 
     {"io/file", {{"core"}, {"POSIX", "xxHash"}}},
     {"io/store", {{"core", "io/file"}, {"POSIX", "LZ4", "xxHash", "nlohmann"}}},
@@ -76,8 +77,8 @@ const std::map<std::string_view, WingRule> kRules{
        "converter/distribute", "converter/build", "converter/normals"},
       {"POSIX", "TBB"}}},
     {"converter/programs",
-     {{"core", "io/file", "io/scan", "io/store", "io/open_scans", "converter", "converter/convert", "converter/journal",
-       "converter/survey"},
+     {{"core", "core/program", "io/file", "io/scan", "io/store", "io/open_scans", "converter", "converter/convert",
+       "converter/journal", "converter/survey"},
       {"POSIX", "CLI11", "nlohmann"}}},
 
     {"viewer/camera", {{"core", "io/file", "io/store"}, {"nlohmann"}}},
@@ -89,12 +90,12 @@ const std::map<std::string_view, WingRule> kRules{
     {"viewer/output",
      {{"core", "io/file", "lod", "render", "render/plan", "viewer/camera", "viewer/session"}, {"POSIX"}}},
     {"viewer/bench",
-     {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "viewer/camera",
-       "viewer/session", "viewer/output"},
+     {{"core", "core/program", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl",
+       "viewer/camera", "viewer/session", "viewer/output"},
       {"POSIX", "CLI11", "nlohmann"}}},
     {"viewer/window",
-     {{"core", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl", "render/picture",
-       "render/progressive", "viewer/camera", "viewer/tools", "viewer/session", "viewer/output"},
+     {{"core", "core/program", "io/file", "io/store", "lod", "render", "render/create_rasterizer", "render/gl",
+       "render/picture", "render/progressive", "viewer/camera", "viewer/tools", "viewer/session", "viewer/output"},
       {"POSIX", "GL", "GLFW", "ImGui", "CLI11", "nlohmann"}}},
 };
 
@@ -266,6 +267,8 @@ TEST(Wings, TheCheckRefusesForbiddenIncludes) {
   EXPECT_NE(objection("core/box.h", "io/store/store.h"), "");
   EXPECT_NE(objection("core/view.cpp", "lz4.h"), "");
   EXPECT_NE(objection("core/log.cpp", "thread"), "");
+  EXPECT_NE(objection("core/view.cpp", "core/program/exit_code.h"), "");
+  EXPECT_NE(objection("lod/streamer.cpp", "core/program/stop_signal.h"), "");
   EXPECT_NE(objection("io/store/store.cpp", "lod/selection.h"), "");
   EXPECT_NE(objection("io/store/store.cpp", "io/las/las_header.h"), "");
   EXPECT_NE(objection("io/store/store.cpp", "io/scan/point_source.h"), "");
@@ -304,6 +307,7 @@ TEST(Wings, TheCheckAllowsWhatTheDesignAllows) {
   EXPECT_EQ(objection("render/create_rasterizer.cpp", "render/cpu/cpu_rasterizer.h"), "");
   EXPECT_EQ(objection("converter/convert.cpp", "converter/build/merge.h"), "");
   EXPECT_EQ(objection("converter/build/merge.cpp", "tbb/parallel_for.h"), "");
+  EXPECT_EQ(objection("core/program/command_line.cpp", "CLI/CLI.hpp"), "");
   EXPECT_EQ(objection("viewer/window/window.cpp", "GLFW/glfw3.h"), "");
   EXPECT_EQ(objection("viewer/window/viewer_app.cpp", "lod/streamer.h"), "");
 }

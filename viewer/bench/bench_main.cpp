@@ -1,8 +1,7 @@
-#include <exception>
 #include <iostream>
 
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/exit_code.h"
 #include "core/readable.h"
 #include "io/file/text_file.h"
 #include "viewer/bench/bench_options.h"
@@ -30,7 +29,7 @@ void printSummary(const BenchOptions& options, const BenchReport& report) {
   std::cout << options.output << "/report.html\n";
 }
 
-int runProgram(int argc, char** argv) {
+int run(int argc, char** argv) {
   const std::optional<BenchOptions> options = parseBenchOptions(argc, argv);
   if (!options) return 0;
   if (options->command == BenchOptions::Command::compare) return compare(*options);
@@ -52,10 +51,4 @@ int runProgram(int argc, char** argv) {
 }  // namespace
 }  // namespace strata
 
-int main(int argc, char** argv) {
-  try {
-    return strata::runProgram(argc, argv);
-  } catch (const std::exception& error) {
-    return strata::reportFailure(error);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::run, argc, argv); }

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/program/command_line.h"
 #include "core/version.h"
 #include "render/create_rasterizer.h"
-#include "viewer/session/command_line.h"
 
 namespace strata {
 namespace {

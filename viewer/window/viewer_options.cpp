@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/program/command_line.h"
 #include "core/version.h"
-#include "viewer/session/command_line.h"
 
 namespace strata {
 

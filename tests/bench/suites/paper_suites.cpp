@@ -1,11 +1,10 @@
 // paper_suites --suite NAME: prints the tables of a paper, measured on this machine.
 #include <CLI/CLI.hpp>
-#include <exception>
 
 #include "core/error.h"
-#include "core/program.h"
+#include "core/program/command_line.h"
+#include "core/program/exit_code.h"
 #include "tests/bench/suites/suites.h"
-#include "viewer/session/command_line.h"
 #include "viewer/session/drawing.h"
 
 namespace strata::suite {
@@ -41,10 +40,4 @@ int run(int argc, char** argv) {
 }  // namespace
 }  // namespace strata::suite
 
-int main(int argc, char** argv) {
-  try {
-    return strata::suite::run(argc, argv);
-  } catch (const std::exception& failure) {
-    return strata::reportFailure(failure);
-  }
-}
+int main(int argc, char** argv) { return strata::exitCodeOf(strata::suite::run, argc, argv); }
