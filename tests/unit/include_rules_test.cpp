@@ -7,8 +7,10 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/support/paths.h"
@@ -389,6 +391,99 @@ TEST(Sources, TheCheckSeesAFileThatIsNotListed) {
   EXPECT_TRUE(isListed(list, "fuzz/text_fuzz.cpp"));
   EXPECT_FALSE(isListed(list, "two.cpp"));
   EXPECT_FALSE(isListed(list, "fuzz/ply_fuzz.cpp"));
+}
+
+/// `text` without comments, preprocessor lines and literals.
+std::string codeOf(std::istream& in) {
+  static const std::regex literal(R"re("(\\.|[^"\\])*"|'(\\.|[^'\\])+')re");
+  std::string code;
+  for (std::string line; std::getline(in, line);) {
+    if (const std::size_t first = line.find_first_not_of(' '); first == std::string::npos || line[first] == '#')
+      continue;
+    line = std::regex_replace(line, literal, "");
+    code += line.substr(0, line.find("//")) + "\n";
+  }
+  return code;
+}
+
+/// The classes, structs and enums that C++ code defines at namespace scope, as "strata::suite::Cloud".
+std::set<std::string> typesDefinedIn(const std::string& code) {
+  static const std::regex token(R"re(\w+|::|.)re");
+  std::vector<std::string> tokens;
+  for (std::sregex_iterator at(code.begin(), code.end(), token), end; at != end; ++at)
+    if (at->str() != " ") tokens.push_back(at->str());
+
+  std::set<std::string> types;
+  std::vector<std::string> scopes;  // one per open brace: "strata::" for a namespace, "" for anything else
+  const auto qualified = [&](const std::string& name) {
+    std::string path;
+    for (const std::string& scope : scopes) path += scope;
+    return path + name;
+  };
+  std::string opening;  // what the next brace opens
+  for (std::size_t i = 0; i < tokens.size(); ++i) {
+    const std::string& word = tokens[i];
+    if (word == "{") scopes.push_back(std::exchange(opening, ""));
+    if (word == "}" && !scopes.empty()) scopes.pop_back();
+    if (word == "namespace") {
+      opening = "";
+      for (std::size_t k = i + 1; k < tokens.size() && tokens[k] != "{" && tokens[k] != ";"; ++k) opening += tokens[k];
+      opening += "::";
+    }
+    if (word != "class" && word != "struct" && word != "enum") continue;
+    if (std::find(scopes.begin(), scopes.end(), "") != scopes.end()) continue;
+    // The name is the last word before the bases or the brace; a macro with arguments may come before it.
+    std::string name;
+    std::size_t k = i + 1;
+    for (; k < tokens.size() && std::string(":{;<>,=)").find(tokens[k]) == std::string::npos; ++k) {
+      if (tokens[k] == "(")
+        k = static_cast<std::size_t>(std::find(tokens.begin() + static_cast<std::ptrdiff_t>(k), tokens.end(), ")") -
+                                     tokens.begin());
+      else if (tokens[k] != "final" && tokens[k] != "class" && tokens[k] != "struct")
+        name = tokens[k];
+    }
+    if (k >= tokens.size()) break;
+    const bool hasBases = tokens[k] == ":";
+    while (hasBases && k < tokens.size() && tokens[k] != "{" && tokens[k] != ";") ++k;
+    if (k < tokens.size() && tokens[k] == "{" && !name.empty()) types.insert(qualified(name));
+    i = k - 1;
+  }
+  return types;
+}
+
+/// The files that define each type, of those types that several files define.
+std::map<std::string, std::set<std::string>> definedTwice(const std::map<std::string, std::string>& codeOfFiles) {
+  std::map<std::string, std::set<std::string>> files;
+  for (const auto& [file, code] : codeOfFiles)
+    for (const std::string& type : typesDefinedIn(code)) files[type].insert(file);
+  std::erase_if(files, [](const auto& type) { return type.second.size() < 2; });
+  return files;
+}
+
+// Two types of one name are one type to the linker, which then takes the functions of either for both.
+TEST(Sources, ATypeNameIsDefinedOnce) {
+  std::map<std::string, std::string> headers;
+  std::size_t types = 0;
+  for (const std::string& file : filesIn(kLayers, {".h"})) {
+    std::ifstream in(test::sourceFolder() / file);
+    headers[file] = codeOf(in);
+    types += typesDefinedIn(headers[file]).size();
+  }
+  EXPECT_GT(types, headers.size()) << "the types are not being found";
+  for (const auto& [type, files] : definedTwice(headers))
+    ADD_FAILURE() << type << " is defined in " << *files.begin() << " and in " << *files.rbegin();
+}
+
+TEST(Sources, TheCheckSeesATypeThatIsDefinedTwice) {
+  std::istringstream text(
+      "#define X struct A {\n"
+      "namespace strata {\n// struct B {\nclass C;\ntemplate <class T>\nclass D final : public E<T> {\n  struct F "
+      "{};\n};\n"
+      "namespace suite {\nenum class G : int { a, b };\n}\nstruct MACRO(\"x{\") H {\n};\nstruct I {\n} i;\n}\n");
+  const std::string code = codeOf(text);
+  EXPECT_EQ(typesDefinedIn(code), (std::set<std::string>{"strata::D", "strata::suite::G", "strata::H", "strata::I"}));
+  const auto twice = definedTwice({{"a.h", code}, {"b.h", "namespace strata { struct H { int h; }; struct G {}; }"}});
+  EXPECT_EQ(twice, (std::map<std::string, std::set<std::string>>{{"strata::H", {"a.h", "b.h"}}}));
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ Facts optionFacts(const BenchOptions& o, const DrawOptions& draw, const std::str
       {"page cache", pageCache}};
 }
 
-StageTime stage(const std::string& name, const std::vector<FrameRecord>& frames, double FrameRecord::*member,
+FrameStage stage(const std::string& name, const std::vector<FrameRecord>& frames, double FrameRecord::*member,
                 bool onRenderThread) {
   std::vector<double> values;
   double sum = 0.0;

@@ -68,7 +68,7 @@ std::string reportJson(const BenchReport& report) {
     json["jumps"].push_back({{"t", jump.t}, {"reached_ms", reached}});
   }
   json["stages_ms"] = Json::object();
-  for (const StageTime& stage : report.stages)
+  for (const FrameStage& stage : report.stages)
     json["stages_ms"][stage.name] = {{"mean", stage.meanMs}, {"p95", stage.p95Ms}};
   json["counters"] = Json::object();
   for (const auto& [name, value] : report.counters) json["counters"][name] = value;

@@ -10,8 +10,8 @@
 
 namespace strata {
 
-/// Milliseconds a stage of a frame took, over all frames.
-struct StageTime {
+/// How long one stage of the frames took, over all frames of a flight.
+struct FrameStage {
   std::string name;
   double meanMs = 0.0, p95Ms = 0.0;
   bool onRenderThread = true;  ///< else it runs beside the frames and is no part of their time
@@ -37,7 +37,7 @@ struct BenchReport {
   std::vector<std::pair<std::string, std::string>> options;  ///< of this run
   Machine machine;
   BenchMeasures measures;  ///< frames = 0: no path was played, the report shows pictures only
-  std::vector<StageTime> stages;
+  std::vector<FrameStage> stages;
   std::vector<std::pair<std::string, double>> counters;  ///< of the streamer, by name
   std::vector<FrameRecord> frames;                       ///< of the run whose median frame time is the median one
   std::vector<JumpRecord> jumps;                         ///< medians over the runs

@@ -254,12 +254,12 @@ std::string repetitionsHtml(const BenchReport& report) {
          rows + "</table>\n";
 }
 
-std::string stagesHtml(const std::vector<StageTime>& stages) {
+std::string stagesHtml(const std::vector<FrameStage>& stages) {
   double total = 0.0;
-  for (const StageTime& stage : stages) total += stage.onRenderThread ? stage.meanMs : 0.0;
+  for (const FrameStage& stage : stages) total += stage.onRenderThread ? stage.meanMs : 0.0;
   std::string bar = "<div class=\"stages\">";
   std::string rows = "<table><tr><th>stage</th><th class=\"n\">mean</th><th class=\"n\">95th percentile</th></tr>";
-  for (const StageTime& stage : stages) {
+  for (const FrameStage& stage : stages) {
     std::string colour("k");
     colour += std::to_string(&stage - stages.data());
     if (stage.onRenderThread && total > 0.0)
