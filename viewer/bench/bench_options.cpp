@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostLoaders = 64;
 
-/// What CLI11 fills in before names become values.
+/// The words of the command line, before names become values.
 struct RawOptions {
   std::string backend = "auto", size = "1920x1080", occlusion = "on", failAbove;
 };
@@ -27,21 +27,21 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
   app.add_flag("--stills", o.stills, "write overview.png, close.png and detail.png");
   app.add_option("-o,--output", o.output, "folder for the report and the pictures");
   app.add_option("--backend", raw.backend, backendChoices())->capture_default_str();
-  app.add_option("--size", raw.size, "of the picture, pixels")->capture_default_str();
-  app.add_option("--point-budget", o.streamer.selection.pointBudget, "most points in a frame")
+  app.add_option("--size", raw.size, "size of the picture in pixels")->capture_default_str();
+  app.add_option("--point-budget", o.streamer.selection.pointBudget, "largest number of points in a frame")
       ->check(CLI::Range(std::uint64_t{1}, SelectionOptions::kMaxPointBudget))
       ->capture_default_str();
-  app.add_option("--points-per-pixel", o.streamer.selection.pointsPerPixel, "wanted density")
+  app.add_option("--points-per-pixel", o.streamer.selection.pointsPerPixel, "wanted density of points on the screen")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
-  app.add_option("--point-size", o.pointSize, "side of a point, pixels")
+  app.add_option("--point-size", o.pointSize, "side of a point in pixels")
       ->check(CLI::Range(1, DrawOptions::kLargestPoint))
       ->capture_default_str();
   app.add_flag("--edl", o.edl, "eye-dome lighting");
   addDrawFlags(app, o.draw);
   addProgressiveFlags(app, o.progressive);
   app.add_option("--occlusion", raw.occlusion,
-                 "on: closed surfaces hide what is behind; exact: only where they leave no pixel open; off")
+                 "on: closed surfaces hide the nodes behind them; exact: only if they leave no pixel open; off")
       ->check(CLI::IsMember({"on", "exact", "off"}))
       ->capture_default_str();
   app.add_option("--loader-threads", o.streamer.loaderThreads, "threads that read nodes")
@@ -49,11 +49,12 @@ void addRunOptions(CLI::App& app, BenchOptions& o, RawOptions& raw) {
       ->capture_default_str();
   app.add_option("--cache", o.streamer.cacheBytes, "memory for decoded nodes, such as 512M or 2G")
       ->transform(CLI::AsSizeValue(false));
-  app.add_flag("--cold", o.cold, "first drop points.bin from the system's page cache (posix_fadvise)");
-  app.add_flag("--settle", o.settle, "wait for full detail before every frame; else the path is flown in real time");
-  app.add_option("--repeat", o.repeat, "fly N times, each from empty caches; the report has medians and the noise")
+  app.add_flag("--cold", o.cold, "drop points.bin from the system's page cache first (posix_fadvise)");
+  app.add_flag("--settle", o.settle, "wait for full detail before every frame instead of flying in real time");
+  app.add_option("--repeat", o.repeat,
+                 "fly N times, each time from empty caches; the report has the medians and the noise")
       ->check(CLI::Range(1, 1000));
-  app.add_option("--video", o.video, "a film of the flight, such as flight.mp4, through ffmpeg; implies --settle");
+  app.add_option("--video", o.video, "write a film of the flight, such as flight.mp4, with ffmpeg; implies --settle");
   app.add_option("--screenshot-every", o.screenshotEvery, "write a PNG of every N-th frame")
       ->check(CLI::Range(1, 1000000));
   app.add_flag("!--no-trace", o.trace, "write no trace.json");
@@ -84,10 +85,10 @@ double parsePercent(const std::string& text) {
 std::optional<BenchOptions> parseBenchOptions(int argc, const char* const* argv) {
   BenchOptions options;
   RawOptions raw;
-  CLI::App app{"Plays a camera path over a store and measures it.", "strata-bench"};
+  CLI::App app{"Flies a camera path through a store and measures the frames.", "strata-bench"};
   app.set_version_flag("--version", "strata-bench " + version());
   addRunOptions(app, options, raw);
-  CLI::App* compare = app.add_subcommand("compare", "ratios of the measures of two runs");
+  CLI::App* compare = app.add_subcommand("compare", "compare the measures of two runs");
   compare->add_option("A", options.reportA, "folder or report.json of the first run")->required();
   compare->add_option("B", options.reportB, "folder or report.json of the second run")->required();
   compare->add_option("-o,--output", options.comparison,

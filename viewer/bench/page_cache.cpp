@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <vector>
 
 #include "core/error.h"
+#include "core/log.h"
 
 namespace strata {
 namespace {
@@ -49,6 +51,21 @@ double dropFromPageCache(const std::string& path) {
   ::close(file);
   if (failure != 0) throw posixError(path, "dropping it from the page cache", failure);
   return share;
+}
+
+std::string dropPages(const Store& store) {
+  char text[80];
+  std::snprintf(text, sizeof text, "cold: points.bin dropped (posix_fadvise), %.0f %% stayed",
+                100.0 * dropFromPageCache(store.points().name()));
+  logInfo(std::string("page cache: ") + text);
+  return text;
+}
+
+std::string pagesAsTheyAre(const Store& store) {
+  char text[80];
+  std::snprintf(text, sizeof text, "left as it was: %.0f %% of points.bin in memory at the start",
+                100.0 * shareInPageCache(store.points().name()));
+  return text;
 }
 
 }  // namespace strata
