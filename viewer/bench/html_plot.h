@@ -19,7 +19,7 @@ struct Plot {
   std::vector<double> x;  ///< ascending
   std::vector<PlotLine> lines;
   std::vector<double> marks;                ///< x of upright ticks at the top
-  std::string (*format)(double) = nullptr;  ///< of the y labels
+  std::string (*format)(double) = nullptr;  ///< writes the y labels
   std::string unit = "s";                   ///< of x
   double top = 0.0;                         ///< y at the upper edge; 0 = a round number above the highest value
 };
@@ -29,7 +29,7 @@ struct Plot {
 inline constexpr int kPlotColumns = 700;
 std::string plotHtml(const Plot& plot);
 
-/// The smallest of 1, 2, 2.5, 5 times a power of ten that is not below `value`; 1 for nothing above zero.
+/// The smallest of 1, 2, 2.5 and 5 times a power of ten that is not below `value`; 1 when `value` is not positive.
 double niceCeiling(double value);
 
 }  // namespace strata

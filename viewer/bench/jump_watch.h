@@ -13,10 +13,10 @@ class JumpWatch {
  public:
   /// The camera is put to a new place, `t` seconds along the path.
   void begin(double t, double nowMs);
-  /// The camera shows this from now on, until the next jump or view.
+  /// The view of the camera from now on, until the next jump or view.
   void look(const View& view);
-  /// What is drawn at `nowMs`. Returns the share of the wanted nodes that are in it as finely as wanted, 0 to 1; 0 for
-  /// a list that was chosen before the jump.
+  /// Takes the list that is drawn at `nowMs`. Returns the share of the wanted nodes that it draws as finely as wanted,
+  /// 0 to 1, or 0 for a list that was selected before the jump.
   double see(const RenderList& list, double nowMs);
   std::vector<JumpRecord> take() { return std::move(jumps_); }
 
@@ -26,8 +26,8 @@ class JumpWatch {
   double beganMs_ = 0.0;
 };
 
-/// Of several runs of one flight: the median time to each share at each jump; -1 where half of the runs or more never
-/// got there.
+/// The median over several runs of one flight of the time to each share at each jump; -1 when half of the runs or more
+/// never got there.
 std::vector<JumpRecord> medianJumps(std::span<const std::vector<JumpRecord>> runs);
 
 }  // namespace strata

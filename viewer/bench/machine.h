@@ -4,18 +4,18 @@
 
 namespace strata {
 
-/// What a figure has to be read with.
+/// The machine on which a run was measured.
 struct Machine {
   std::string name;          ///< host name
   std::string system;        ///< "Linux 6.1.0 x86_64"
   std::string cpu;           ///< model name
-  int cores = 0;             ///< that this process may use
+  int cores = 0;             ///< number of cores that this process may use
   std::uint64_t memory = 0;  ///< bytes
 };
 
 Machine thisMachine();
 
-/// CPU time used since the machine and the process began, seconds over all cores; zeros where the system does not say.
+/// CPU time used since the machine and the process began, seconds over all cores; zeros when the system does not tell.
 struct CpuTime {
   double machine = 0.0, own = 0.0;
 };

@@ -43,7 +43,7 @@ struct JumpRecord {
   double reachedMs[3] = {-1.0, -1.0, -1.0};
 };
 
-/// The figures of a run; `--json` prints exactly these.
+/// The measures of a run; `--json` prints exactly these.
 struct BenchMeasures {
   int frames = 0;
   double p50Ms = 0.0, p95Ms = 0.0, p99Ms = 0.0, maxMs = 0.0;  ///< of FrameRecord::frameMs
@@ -72,11 +72,12 @@ inline constexpr double kHitchMs = 60.0;
 inline constexpr double kHitchRatio = 1.5;
 bool isHitch(double previousMs, double frameMs);
 
-/// The part of the measures that follows from the frames alone.
+/// The measures that follow from the frames alone.
 BenchMeasures measureFrames(std::span<const FrameRecord> frames);
 
-/// Of several runs of one flight: the median of each measure by itself, and how far each strays.
+/// The median of each measure over several runs of one flight.
 BenchMeasures medianMeasures(std::span<const BenchMeasures> runs);
+/// The spread of a measure over several runs.
 struct MeasureNoise {
   std::string name;    ///< "frame_ms p50"
   double share = 0.0;  ///< (largest - smallest) / median over the runs

@@ -21,25 +21,25 @@ struct PlayOptions {
   std::string folder;  ///< for the pictures
   std::string video;   ///< film of every frame; empty = none
   double nearPlane = 0.01;
-  bool pictures = true;          ///< false: none at all, marked frames neither
-  const Store* store = nullptr;  ///< of the streamer, for the widest spacing on the screen; null = not measured
-  TraceLane* lane = nullptr;     ///< gets what this thread does
+  bool pictures = true;          ///< false: no pictures at all, not even of marked frames
+  const Store* store = nullptr;  ///< the streamer's store, to measure the widest spacing; null = not measured
+  TraceLane* lane = nullptr;     ///< records the spans of this thread; null = none
 };
 
-/// What a flight left behind.
+/// The results of a flight.
 struct PlayedPath {
   std::vector<FrameRecord> frames;
   double timeToFullDetailMs = 0.0;
   bool reachedFullDetail = false;
   std::vector<JumpRecord> jumps;        ///< the start, then each cut of the path
-  std::vector<ReportPicture> pictures;  ///< the ones that the report does not show have no pixels
+  std::vector<ReportPicture> pictures;  ///< those that the report does not show have no pixels
 };
 
-/// The whole flight, on the calling thread, which becomes the streamer's render thread. Pictures are taken of every
-/// screenshotEvery-th frame and of the path's marked ones.
+/// Flies the whole path on the calling thread, which becomes the streamer's render thread. Takes pictures of every
+/// screenshotEvery-th frame and of the marked frames of the path.
 PlayedPath playPath(const CameraPath& path, const PlayOptions& options, Streamer& streamer, Rasterizer& rasterizer);
 
-/// Draws until everything in the list is on the GPU: one picture in full detail. Waits for the streamer first.
+/// Draws one picture in full detail: waits for the streamer, then draws until all nodes of the list are on the GPU.
 Picture drawComplete(const View& view, const DrawOptions& draw, Streamer& streamer, Rasterizer& rasterizer);
 
 }  // namespace strata

@@ -14,18 +14,18 @@ namespace strata {
 struct FrameStage {
   std::string name;
   double meanMs = 0.0, p95Ms = 0.0;
-  bool onRenderThread = true;  ///< else it runs beside the frames and is no part of their time
+  bool onRenderThread = true;  ///< false: it runs beside the frames and is no part of their time
 };
 
 struct ReportPicture {
   std::string title;         ///< "overview", "frame 30"
   std::string file;          ///< beside the report
-  bool ofTheFlight = false;  ///< else a still
-  Image image;               ///< without pixels where the report does not show it
+  bool ofTheFlight = false;  ///< false: a still
+  Image image;               ///< has no pixels when the report does not show it
   std::string hash = {};     ///< imageHash() of the picture in its full size
 };
 
-/// All that a run leaves behind, in words and numbers.
+/// All results of a run, in words and numbers.
 struct BenchReport {
   std::string program;  ///< "strata-bench 0.1.0"
   std::string commit;   ///< of the source it was built from; "unknown" outside of a checkout
@@ -41,20 +41,20 @@ struct BenchReport {
   std::vector<std::pair<std::string, double>> counters;  ///< of the streamer, by name
   std::vector<FrameRecord> frames;                       ///< of the run whose median frame time is the median one
   std::vector<JumpRecord> jumps;                         ///< medians over the runs
-  std::vector<BenchMeasures> runs;                       ///< each repetition by itself, in order
+  std::vector<BenchMeasures> runs;                       ///< of each repetition, in order
   std::vector<ReportPicture> pictures;
 };
 
-/// XXH3-64, 16 hexadecimal digits.
+/// The XXH3-64 of a text in 16 hexadecimal digits.
 std::string textHash(const std::string& text);
-/// XXH3-64 of size and pixels, 16 hexadecimal digits: equal pictures have equal hashes.
+/// The XXH3-64 of size and pixels in 16 hexadecimal digits. Equal pictures have equal hashes.
 std::string imageHash(const Image& image);
-/// Of the hierarchy, which holds a checksum of every payload: equal stores have equal hashes.
+/// The hash of the hierarchy, which holds a checksum of every payload. Equal stores have equal hashes.
 std::string storeHash(const Store& store);
 
 std::string reportJson(const BenchReport& report);
 std::string framesCsv(const std::vector<FrameRecord>& frames);
-/// One file that needs no other and no network: pictures and plots are inside.
+/// One page that needs neither other files nor the network: pictures and plots are inside.
 std::string reportHtml(const BenchReport& report);
 
 /// Writes report.json, frames.csv and report.html into `folder`. Throws Error when one cannot be written whole.

@@ -17,22 +17,22 @@ namespace strata {
 glm::dvec3 worldPoint(const View& view, const glm::dvec2& pixel, double depth);
 /// Metres along the view direction from the eye to `point`.
 double depthOf(const View& view, const glm::dvec3& point);
-/// Where `point` appears. It has to lie before the eye.
+/// The pixel in which `point` appears. It must lie in front of the eye.
 glm::dvec2 pixelOf(const View& view, const glm::dvec3& point);
 
-/// The part of the segment that lies before the near plane, as pixels; nothing where none does.
+/// The part of the segment that lies beyond the near plane, as pixels; nothing when all of it is nearer.
 std::optional<std::pair<glm::dvec2, glm::dvec2>> segmentOnScreen(const View& view, glm::dvec3 a, glm::dvec3 b);
 
 /// Turns around `pivot`: half a turn for a drag over the image's width. The distance to the pivot stays, the horizon
 /// stays level, and the camera never tips over.
 View orbited(const View& view, const glm::dvec3& pivot, const glm::dvec2& dragPx);
-/// Shifts so that what lies `depth` metres away follows the cursor exactly.
+/// Shifts the camera so that things `depth` metres away follow the cursor exactly.
 View panned(const View& view, double depth, const glm::dvec2& dragPx);
-/// Slides level over the ground, as a hand moves a map: `grabbed`, a point of the ground, comes under the cursor. Where
-/// the cursor is at the horizon of the level plane through the point, or above it, the view stays.
 inline constexpr double kFarthestSlide = 20.0;  ///< times the distance of the grabbed point
+/// Slides level over the ground, as a hand moves a map: `grabbed`, a point of the ground, comes under the cursor. If
+/// the cursor is at or above the horizon of the level plane through that point, the view stays.
 View slid(const View& view, const glm::dvec3& grabbed, const glm::dvec2& cursor);
-/// Turns the head: as orbited() about the eye.
+/// Turns the head: the same turn as orbited(), about the eye.
 View looked(const View& view, const glm::dvec2& dragPx);
 /// Scales the distance to `anchor` by `factor`; the anchor stays under the cursor.
 View zoomed(const View& view, const glm::dvec3& anchor, double factor);
@@ -53,25 +53,25 @@ View paced(const View& view, double notches);
 View flown(const View& view, const FlyInput& input, double seconds);
 
 enum class StandardView { front, side, top };
-/// All of `box` from the south, the east or above.
+/// A view of all of `box` from the south, the east or above.
 View standardView(const View& view, const Box& box, StandardView which);
-/// All of `box`, from where the camera looks now.
+/// A view of all of `box` from the present direction.
 View framed(const View& view, const Box& box);
 
-/// The same view without perspective, or with it again; what lies at the target keeps its size.
+/// The same view without perspective, or with it again; things at the target keep their size.
 View withOrthographic(const View& view, bool orthographic);
-/// `point` in the middle of the picture, at 0.4 of its distance, seen from the same direction.
+/// A view in the same direction with `point` in the middle of the picture, at 0.4 of its distance.
 View approached(const View& view, const glm::dvec3& point);
-/// Where a glide is after share `u` of its way, 0 to 1: the target moves straight, the eye swings around it, the
-/// distance changes by equal ratios in equal times; it starts and ends slowly.
+/// The view of a glide after the share `u` of its time, 0 to 1. The target moves straight, the eye swings around it,
+/// and the distance changes by equal ratios in equal times. A glide starts and ends slowly.
 View glided(const View& from, const View& to, double u);
 
-/// Where the camera will be if it goes on as it does: by the change of the view over the last frame.
+/// Predicts the view a little ahead from the change of the view over the last frame.
 class CameraMotion {
  public:
   static constexpr double kAheadSeconds = 0.5;
 
-  /// Once a frame, with the view of this frame.
+  /// Must be called once per frame, with the view of this frame.
   View ahead(const View& now, std::chrono::steady_clock::time_point time);
 
  private:
@@ -79,7 +79,7 @@ class CameraMotion {
   std::chrono::steady_clock::time_point lastTime_{};
 };
 
-/// What the left button, the right button and the wheel do.
+/// Decides what the left button, the right button and the wheel do.
 enum class MoveMode {
   orbit,  ///< orbits, pans, goes nearer
   fly,    ///< turns the head, pans, sets the pace
@@ -89,7 +89,8 @@ enum class MoveMode {
 const char* modeName(MoveMode mode);  ///< "orbit", "fly", "earth"
 MoveMode nextMode(MoveMode mode);
 
-/// What a drag in progress needs to remember. `under` is the world point below the cursor where something is drawn.
+/// The camera in the user's hand: drags, the wheel, flying and glides change its view. `under` is the world point below
+/// the cursor, if a point is drawn there.
 class CameraControl {
  public:
   enum class Drag { none, orbit, pan, look, slide };
@@ -101,11 +102,11 @@ class CameraControl {
     view_ = view;
     glide_.reset();
   }
-  /// Goes there within kGlideSeconds; what the hand does meanwhile stops it.
   static constexpr double kGlideSeconds = 0.6;
+  /// Begins a glide to `view`, which takes kGlideSeconds. Any movement by hand stops it.
   void glideTo(const View& view) { glide_ = Glide{view_, view, 0.0}; }
   bool gliding() const { return glide_.has_value(); }
-  /// `seconds` later.
+  /// Moves a glide on by `seconds`.
   void advance(double seconds);
   void resize(int width, int height);
 

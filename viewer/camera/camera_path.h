@@ -9,13 +9,13 @@
 
 namespace strata {
 
-/// Where the camera is at a moment. World coordinates, metres; t in seconds.
+/// The camera at one moment. World coordinates in metres; t in seconds.
 struct CameraKey {
   double t = 0.0;
   glm::dvec3 eye{0.0};
   glm::dvec3 target{0.0};
   glm::dvec3 up{0.0, 0.0, 1.0};
-  bool cut = false;   ///< the camera jumps here; it stood still at the key before until now
+  bool cut = false;   ///< the camera stays at the key before until now, then jumps here
   bool mark = false;  ///< a picture is taken here
 
   bool operator==(const CameraKey&) const = default;
@@ -25,7 +25,7 @@ struct CameraKey {
 /// keys' t only say when each of these runs begins and ends.
 enum class PathSpeed : std::uint8_t { keyed, constant };
 
-/// A scripted flight: what a benchmark plays. The curve passes through every key.
+/// A scripted flight. The curve passes through every key.
 struct CameraPath {
   double fps = 30.0;
   PathSpeed speed = PathSpeed::keyed;
@@ -42,8 +42,8 @@ struct CameraPath {
 /// last key repeats its first is taken for a closed loop, smooth there too. `up` is interpolated linearly.
 View viewAt(const CameraPath& path, double t, int width, int height);
 
-/// When a path of constant speed is where: its time against the keys' clock, which viewAt() goes by. For a keyed path
-/// the two are the same.
+/// Converts between the time along a path and the clock of its keys, which viewAt() takes. They differ for a path of
+/// constant speed and are the same for a keyed one.
 class PathClock {
  public:
   explicit PathClock(const CameraPath& path);
@@ -53,12 +53,12 @@ class PathClock {
  private:
   static double lookUp(const std::vector<double>& from, const std::vector<double>& to, double value);
 
-  std::vector<double> pathTimes_, keyTimes_;  ///< ascending, pairwise; empty: the two clocks are one
+  std::vector<double> pathTimes_, keyTimes_;  ///< ascending, in pairs; empty when the two clocks are the same
 };
 
-/// Frames whose pictures are asked for by `mark`, ascending.
+/// The frames of the keys with `mark`, ascending: their pictures are taken.
 std::vector<int> markedFrames(const CameraPath& path);
-/// First frames after a cut, ascending.
+/// The first frame after each cut, ascending.
 std::vector<int> cutFrames(const CameraPath& path);
 
 /// The JSON text {"fps":30,"fov_y":60,"keys":[{"t":0,"eye":[x,y,z],"target":[x,y,z],"up":[0,0,1]}, ...]} and back.

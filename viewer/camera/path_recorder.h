@@ -7,37 +7,37 @@
 
 namespace strata {
 
-/// The keys of `samples`, in their order, that a path needs to come within `tolerance` of every sample: as a share of
-/// the sample's distance to its target, for the eye and for the target. The first and the last stay.
+/// Picks from `samples`, in their order, the keys that a path needs to pass every sample's eye and target within
+/// `tolerance`, a share of the sample's distance to its target. The first and the last sample are always picked.
 std::vector<CameraKey> thinned(const std::vector<CameraKey>& samples, double tolerance);
 
-/// A camera path made by hand: keys set one by one, or taken down while the camera moves. Keys have perspective: of a
-/// view without, what is seen at the target keeps its size.
+/// A camera path made by hand: keys are set one by one, or recorded while the camera moves. Keys have perspective; in a
+/// view without perspective, things at the target keep their size.
 class PathRecorder {
  public:
-  static constexpr double kKeySeconds = 2.0;     ///< from a key to one set after it
-  static constexpr double kTolerance = 0.005;    ///< of thinned(), about four pixels of a 1080 rows' picture
+  static constexpr double kKeySeconds = 2.0;     ///< from a key to the next one that is set by hand
+  static constexpr double kTolerance = 0.005;    ///< for thinned(): about four pixels in a picture of 1080 rows
   static constexpr double kLeastSeconds = 0.01;  ///< between keys
 
   const std::vector<CameraKey>& keys() const { return keys_; }
-  /// Throws away what was there.
+  /// Replaces all keys.
   void setKeys(std::vector<CameraKey> keys);
 
   void addKey(const View& view);
   void replaceKey(std::size_t index, const View& view);
   void removeKey(std::size_t index);
-  /// The key takes place `seconds` after the one before it; what follows keeps its distances. Not for the first.
+  /// Moves a key, which is not the first one, to `seconds` after the key before it. Later keys move along.
   void setStep(std::size_t index, double seconds);
 
-  /// From here on record() takes down a key for each frame, behind the keys that are there.
+  /// From now on record() adds a key for each frame, behind the keys that exist already.
   void beginRecording(const View& view);
-  /// `seconds` after the last frame.
+  /// Adds the view of a frame, `seconds` after the frame before it.
   void record(const View& view, double seconds);
-  /// Leaves of the recorded keys those that the path needs. A recording without motion is one key.
+  /// Keeps only the recorded keys that the path needs. A recording without motion becomes one key.
   void endRecording();
   bool recording() const { return recording_; }
 
-  /// The path of the keys. Not without any.
+  /// The path through the keys, of which there must be at least one.
   CameraPath path(double fovY, double fps) const;
 
  private:

@@ -14,7 +14,7 @@ namespace strata {
 
 /// A film of a camera path, every frame in full detail.
 struct FilmOrder {
-  std::string file;  ///< whose ending says in which container, such as flight.mp4
+  std::string file;  ///< its ending chooses the container, as in flight.mp4
   CameraPath path;
   int width = 1920, height = 1080;
   DrawOptions draw;
@@ -23,13 +23,13 @@ struct FilmOrder {
 /// Draws a film frame by frame and hands it to ffmpeg. For the render thread, as PictureTaker is.
 class FilmTaker {
  public:
-  /// Throws Error where ffmpeg is not installed.
+  /// Throws Error when ffmpeg is not installed.
   FilmTaker(FilmOrder order, Layers& layers, Rasterizer& rasterizer);
-  /// One that is not asked to go on to the end leaves no file behind.
+  /// Leaves no file behind, unless the film is complete.
   ~FilmTaker();
 
-  /// Waits at most `patience` for detail, and draws a frame when it is there. True when the film is written. Throws
-  /// Error when it cannot be.
+  /// Waits at most `patience` for full detail, and draws a frame when it is there. Returns true when the film is
+  /// written. Throws Error when it cannot be written.
   bool goOn(std::chrono::milliseconds patience);
   double progress() const { return static_cast<double>(index_) / frames_; }
   const Picture& frame() const { return frame_; }
@@ -40,7 +40,7 @@ class FilmTaker {
   const int frames_;
   Layers& layers_;
   Rasterizer& rasterizer_;
-  const std::string unfinished_;  ///< file; a film of that name that is there already stays until this one is whole
+  const std::string unfinished_;  ///< the file until the film is complete, so that an older film stays until then
   VideoWriter video_;
   Picture frame_;
   int index_ = 0;

@@ -8,7 +8,7 @@ namespace strata {
 
 /// Text made safe inside HTML elements and quoted attributes.
 std::string htmlEscape(std::string_view text);
-/// RFC 4648.
+/// `bytes` in base64, as RFC 4648 defines it.
 std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace strata

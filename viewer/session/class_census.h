@@ -10,14 +10,14 @@
 
 namespace strata {
 
-/// What the ASPRS standard calls a class (LAS 1.4 R15, table 17): "ground", "reserved 23", "own 70".
+/// The name of a class in the ASPRS standard (LAS 1.4 R15, table 17): "ground", "reserved 23", "own 70".
 std::string className(std::uint8_t classification);
 
-/// Which classes a scan has, as far as its nodes have been in memory: a store says no more than the least and the
-/// largest. The root holds an even subsample of everything, so that common classes are known at once.
+/// Collects the classes of a scan from the nodes that have been in memory, because a store records only the lowest and
+/// the highest class. The root holds an even subsample of everything, so common classes are known at once.
 class ClassCensus {
  public:
-  /// Looks through a node that it has not met. True when a new class was found.
+  /// Looks through a node, unless it has seen that node before. Returns true when it found a new class.
   bool add(std::size_t store, const NodeData& node);
   const std::bitset<256>& present() const { return present_; }
 

@@ -4,10 +4,10 @@
 
 namespace strata {
 
-/// Where strata-convert lies: beside this program. Throws Error where it does not.
+/// The path of strata-convert, which lies beside this program. Throws Error when it is not there.
 std::string converterProgram();
 
-/// Runs it and waits for it; what it says on stdout is dropped. Throws Error where it fails.
+/// Runs strata-convert and waits for its end. Its output on stdout is dropped. Throws Error when it fails.
 void convertToStore(const std::string& input, const std::string& store, const std::vector<std::string>& options);
 
 }  // namespace strata

@@ -15,7 +15,7 @@ namespace strata {
 /// The options of the command line that say how points are drawn; the same for strata-bench and strata-view.
 struct DrawFlags {
   std::string colour = "auto", shading = "plain", classes, background;
-  std::string fill;                              ///< empty: 1, of a still jump-flood
+  std::string fill;                              ///< empty: 1, or jump-flood for a still
   std::vector<double> range;                     ///< two, or none
   std::vector<std::array<double, 6>> clipBoxes;  ///< x0 y0 z0 x1 y1 z1
   std::vector<std::array<double, 4>> clipPlanes;
@@ -23,9 +23,10 @@ struct DrawFlags {
 
 void addDrawFlags(CLI::App& app, DrawFlags& flags);
 
-/// Throws UsageError for what cannot be understood, naming the option.
+/// The colour mode; nothing for "auto". Throws UsageError, which names the option, for an unknown mode.
 std::optional<ColourMode> colourOf(const DrawFlags& flags);
-/// Everything but the colour mode, which the ranges go by. Throws UsageError likewise.
+/// Applies all flags except the colour mode, which must be set before, as --range depends on it. Throws UsageError,
+/// which names the option, for a value that cannot be understood.
 void applyDrawFlags(const DrawFlags& flags, DrawOptions& draw);
 
 /// "2,6,9-11" as a set. Throws UsageError.

@@ -18,28 +18,31 @@ namespace strata {
 std::optional<ColourMode> parseColour(const std::string& name);
 const char* colourName(ColourMode mode);
 
-/// What shows a store best: its colours where it has any, else its intensity where that varies, else the elevation.
+/// The colour mode that shows a store best: its colours if they vary, else its intensity if that varies, else the
+/// elevation.
 ColourMode bestColour(const StoreInfo& info);
 
-/// Colour, intensity from the 1st to the 99th percentile, elevation over `bounds`.
+/// The options for drawing a store: the colour mode, an intensity range from the 1st to the 99th percentile, and the
+/// elevation range of `bounds`.
 DrawOptions drawOptionsFor(const StoreInfo& info, const Box& bounds, std::optional<ColourMode> colour);
 
-/// The progressive rasterizer where there are options for it, else the one of `backend`; see createRasterizer() for
+/// The progressive rasterizer when there are options for it, else the one of `backend`; see createRasterizer() for
 /// `context` and errors.
 std::unique_ptr<Rasterizer> createRasterizerFor(Backend backend, const std::optional<ProgressiveOptions>& progressive,
                                                 std::unique_ptr<GlContext> context);
 
-/// The same without a window. `automatic` falls back to the cpu where there is no OpenGL.
+/// The same without a window. `automatic` falls back to the cpu when there is no OpenGL.
 std::unique_ptr<Rasterizer> createWindowlessRasterizer(
     Backend backend, const std::optional<ProgressiveOptions>& progressive = std::nullopt);
 
 Image imageOf(const Picture& frame);
 
-/// "1920x1080" as width and height, 1 to 16384 each. Throws UsageError.
+/// The size of a picture in pixels.
 struct PictureSize {
   int width = 1920;
   int height = 1080;
 };
+/// Reads "1920x1080"; width and height are 1 to 16384 each. Throws UsageError.
 PictureSize parseSize(const std::string& text);
 
 }  // namespace strata

@@ -12,7 +12,7 @@
 
 namespace strata {
 
-/// A view with a name, to come back to.
+/// A view with a name, to which the user can return.
 struct Bookmark {
   std::string name;
   View view;
@@ -20,18 +20,18 @@ struct Bookmark {
   bool operator==(const Bookmark&) const = default;
 };
 
-/// What strata-view keeps between two sessions, as a JSON file.
+/// The state that strata-view keeps between two sessions, as a JSON file.
 struct Project {
-  std::vector<std::string> stores;  ///< in the file relative to it where they can be, so that a folder can move
+  std::vector<std::string> stores;  ///< relative to the file if possible, so that the folder can move
   std::vector<bool> shown;          ///< by store
   View view;
-  DrawOptions draw;  ///< but for its clip
+  DrawOptions draw;  ///< without its clip
   std::vector<ClipBox> clipBoxes;
   std::uint64_t pointBudget = SelectionOptions{}.pointBudget;
   double pointsPerPixel = SelectionOptions{}.pointsPerPixel;
   std::vector<Bookmark> bookmarks;
   std::vector<Measurement> measurements;
-  std::optional<CameraPath> path;  ///< where one has been made
+  std::optional<CameraPath> path;  ///< nothing until one has been made
 };
 
 /// The text of the file at `path`, and back. Settings that are absent keep their defaults; parseProject throws Error

@@ -7,25 +7,25 @@
 
 namespace strata {
 
-/// The measurements of a session, and the one that the clicks go to now.
+/// The measurements of a session, and the current one, to which clicks add points.
 class MeasureTool {
  public:
-  /// Clicks go to a new measurement from now on; one that was begun is kept when it is whole.
+  /// Begins a new measurement. The current one is kept if it is complete.
   void begin(MeasureKind kind);
   bool active() const { return current_.has_value(); }
-  /// Empty where none is active.
+  /// Nothing when no measurement is active.
   const std::optional<Measurement>& current() const { return current_; }
 
-  /// A click on a point. A measurement that has all its points is kept, and the next of its kind begins. The same point
-  /// twice in a row counts once.
+  /// Adds a clicked point. A measurement that has all its points is kept, and the next one of its kind begins. The same
+  /// point twice in a row counts once.
   void add(const glm::dvec3& point);
-  /// What the next click is for: "distance: click the first point"; empty where none is active.
+  /// The meaning of the next click: "distance: click the first point"; empty when no measurement is active.
   std::string hint() const;
   /// Takes back the last click.
   void undo();
-  /// Keeps what is whole and ends measuring.
+  /// Keeps the current measurement if it is complete, and ends measuring.
   void finish();
-  /// Ends measuring; drops what was begun.
+  /// Drops the current measurement and ends measuring.
   void cancel() { current_.reset(); }
 
   std::vector<Measurement>& kept() { return kept_; }

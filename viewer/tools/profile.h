@@ -15,25 +15,26 @@
 
 namespace strata {
 
-/// A vertical slab of the scan: what lies within half a width of a line on the ground. Metres, world x and y.
+/// A vertical slab of the scan: all places within half a width of a line on the ground. World x and y in metres.
 struct ProfileSlab {
   std::vector<glm::dvec2> line;  ///< at least two points; a polyline
   double width = 1.0;
 };
 
-/// Where a place lies in the slab: along the line from its beginning, and to the left of it (negative: right).
+/// The position of a place in the slab: metres along the line from its beginning, and to the left of it (negative: to
+/// the right).
 struct SlabPlace {
   double along = 0.0;
   double across = 0.0;
 };
-/// By the nearest point of the line, the earlier of two as near. Nothing where that is more than half a width away, or
-/// where it is an end of the line and the place lies beyond it: the slab ends square.
+/// Found by the nearest point of the line, or the earlier of two that are equally near. Nothing when that point is more
+/// than half a width away, or when the place lies beyond an end of the line: the slab ends square.
 std::optional<SlabPlace> placeInSlab(const ProfileSlab& slab, const glm::dvec2& place);
 double slabLength(const ProfileSlab& slab);
-/// False only where no place of the box, whatever its height, is in the slab.
+/// Returns false only when no place of the box, whatever its height, is in the slab.
 bool mayTouchSlab(const ProfileSlab& slab, const Box& box);
 
-/// A point of a profile, as its source has it.
+/// A point of a profile, with the values that its source has.
 struct ProfilePoint {
   glm::dvec3 position{0.0};  ///< exactly on the store's grid
   double along = 0.0, across = 0.0;
