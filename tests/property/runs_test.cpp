@@ -64,12 +64,12 @@ TEST_P(EveryShape, OfRecordComesBackByCellInOrder) {
     findVariation(block + packed.positionBytes(), packed.stride(), packed.attributeBytes, 3000, variation);
     sorter.add(block, 3000, variation);
   }
-  RunsRecord record{0, 0, std::nullopt, sorter.finish()};
-  EXPECT_GT(record.runs.size(), 1u);
-  appendRuns(journal, record);
+  RunsRecord runs{0, 0, std::nullopt, sorter.finish()};
+  EXPECT_GT(runs.runs.size(), 1u);
+  appendRuns(journal, runs);
 
   RunSet set(grid);
-  for (WrittenRun& w : record.runs) {
+  for (WrittenRun& w : runs.runs) {
     EXPECT_LE(w.run.shape.stride(), packed.stride());
     set.runs.push_back(w.run);
   }
@@ -120,10 +120,10 @@ TEST_P(EveryShape, DamagedInTheFileIsFound) {
   AttributeVariation variation;
   findVariation(points.data() + packed.positionBytes(), packed.stride(), packed.attributeBytes, 5000, variation);
   sorter.add(points.data(), 5000, variation);
-  RunsRecord record{0, 0, std::nullopt, sorter.finish()};
-  appendRuns(journal, record);
+  RunsRecord runs{0, 0, std::nullopt, sorter.finish()};
+  appendRuns(journal, runs);
   RunSet set(grid);
-  for (WrittenRun& w : record.runs) set.runs.push_back(w.run);
+  for (WrittenRun& w : runs.runs) set.runs.push_back(w.run);
 
   std::string bytes = test::readWhole(folder / "spill");
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
