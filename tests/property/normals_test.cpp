@@ -8,10 +8,10 @@
 #include <map>
 #include <random>
 
+#include "converter/convert.h"
 #include "converter/normals/nearest_points.h"
 #include "converter/normals/normal_regions.h"
 #include "converter/normals/plane_fit.h"
-#include "converter/convert.h"
 #include "core/octahedral.h"
 #include "io/store/node_codec.h"
 #include "tests/support/test_data.h"

@@ -15,7 +15,7 @@ struct Chart {
   std::string xLabel, yLabel;
   std::vector<ChartLine> lines;
   double yMin = 0.0, yMax = 1.0;  ///< ends of the axis
-  std::vector<double> xTicks;  ///< ascending; the first and the last are the ends of the axis
+  std::vector<double> xTicks;     ///< ascending; the first and the last are the ends of the axis
   std::vector<std::string> xTickLabels;
   std::vector<double> yTicks;
   std::vector<double> yMarks;  ///< heights of dashed lines, such as a value to be reached

@@ -1,8 +1,8 @@
 // Disks that are too small, and folders that vanish in the middle of a conversion.
 #include <fstream>
 
-#include "converter/journal/build_folder.h"
 #include "converter/convert.h"
+#include "converter/journal/build_folder.h"
 #include "core/error.h"
 #include "tests/support/interrupted.h"
 

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "io/synthetic/scenes.h"
 #include "io/synthetic/random.h"
 #include "io/synthetic/scanner.h"
+#include "io/synthetic/scenes.h"
 
 namespace strata::synthetic {
 namespace {

@@ -11,7 +11,7 @@ namespace {
 constexpr std::chrono::milliseconds kPatience{30};  // how long a frame of the progress waits for detail
 constexpr double kLongestFlight = 1e5;              // seconds, so that a mistyped time does not play for ever
 
-std::string quoted(const std::string& text) {
+std::string shellQuoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
@@ -169,8 +169,8 @@ void OutputJobs::savePath(const View& view, const OutputSource& source) {
   try {
     writeText(state_.pathFile, cameraPathJson(pathOf(view)));
     messages_.notice = "saved " + state_.pathFile;
-    state_.benchCommand = "strata-bench " + quoted(source.firstStore) + " --path " + quoted(state_.pathFile) + " -o " +
-                          quoted(state_.pathFile + ".bench");
+    state_.benchCommand = "strata-bench " + shellQuoted(source.firstStore) + " --path " + shellQuoted(state_.pathFile) +
+                          " -o " + shellQuoted(state_.pathFile + ".bench");
   } catch (const Error& error) {
     messages_.error = error.what();
   }
