@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/image.h"
+
 namespace strata {
 
 /// A finished picture; row 0 is the top. Each vector has width * height entries, row by row.
@@ -14,5 +16,8 @@ struct Picture {
   std::vector<float> depth;            ///< metres along the view direction; +inf for pixels without a point
   std::vector<std::uint32_t> pointId;  ///< ids as RenderList counts them; kNoPoint for pixels without a point
 };
+
+/// The colours of a picture.
+inline Image imageOf(const Picture& picture) { return {picture.width, picture.height, picture.colour}; }
 
 }  // namespace strata

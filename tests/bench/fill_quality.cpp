@@ -18,6 +18,7 @@
 
 #include "core/error.h"
 #include "core/image.h"
+#include "core/picture.h"
 #include "io/store/node_codec.h"
 #include "io/store/store.h"
 #include "render/create_rasterizer.h"

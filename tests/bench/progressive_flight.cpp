@@ -11,13 +11,15 @@
 #include "core/error.h"
 #include "core/image.h"
 #include "core/percentile.h"
+#include "core/picture.h"
 #include "lod/streamer.h"
 #include "render/create_rasterizer.h"
 #include "render/progressive/progressive_rasterizer.h"
 #include "render/stopwatch.h"
 #include "viewer/bench/measures.h"
 #include "viewer/camera/camera_path.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/draw_defaults.h"
+#include "viewer/session/picture_size.h"
 
 namespace strata::bench {
 namespace {

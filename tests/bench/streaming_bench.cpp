@@ -39,7 +39,9 @@
 #include "tests/bench/troubled_disk.h"
 #include "viewer/bench/measures.h"
 #include "viewer/camera/camera_path.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/draw_defaults.h"
+#include "viewer/session/picture_size.h"
+#include "viewer/session/program_rasterizer.h"
 
 namespace strata {
 namespace {

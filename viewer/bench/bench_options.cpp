@@ -8,6 +8,7 @@
 #include "core/program/command_line.h"
 #include "core/version.h"
 #include "render/create_rasterizer.h"
+#include "viewer/session/picture_size.h"
 
 namespace strata {
 namespace {

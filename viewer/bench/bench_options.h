@@ -8,7 +8,7 @@
 #include "lod/streamer.h"
 #include "render/create_rasterizer.h"
 #include "viewer/session/draw_flags.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/picture_size.h"
 #include "viewer/session/progressive_flags.h"
 
 namespace strata {

@@ -8,6 +8,8 @@
 #include "viewer/bench/page_cache.h"
 #include "viewer/bench/report_facts.h"
 #include "viewer/bench/take_stills.h"
+#include "viewer/session/draw_defaults.h"
+#include "viewer/session/program_rasterizer.h"
 
 namespace strata {
 namespace {

@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/picture.h"
 #include "lod/hierarchy_index.h"
 #include "viewer/bench/jump_watch.h"
 #include "viewer/bench/screen_spacing.h"

@@ -9,7 +9,7 @@
 #include "render/rasterizer.h"
 #include "viewer/bench/report.h"
 #include "viewer/camera/camera_path.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/picture_size.h"
 
 namespace strata {
 

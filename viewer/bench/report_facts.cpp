@@ -7,6 +7,7 @@
 #include "core/readable.h"
 #include "io/file/text_file.h"
 #include "viewer/bench/report.h"
+#include "viewer/session/colour_names.h"
 
 namespace strata {
 namespace {

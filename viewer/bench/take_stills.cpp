@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "core/picture.h"
 #include "viewer/bench/path_player.h"
 #include "viewer/camera/stills.h"
+#include "viewer/session/draw_defaults.h"
 
 namespace strata {
 namespace {

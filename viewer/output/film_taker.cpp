@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "viewer/session/drawing.h"
+#include "core/picture.h"
 
 namespace strata {
 namespace {

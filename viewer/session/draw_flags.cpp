@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/error.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/colour_names.h"
 
 namespace strata {
 namespace {

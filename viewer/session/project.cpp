@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "viewer/session/colour_names.h"
 #include "viewer/session/draw_flags.h"
-#include "viewer/session/drawing.h"
 
 namespace strata {
 namespace {

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <utility>
 
-#include "viewer/session/drawing.h"
+#include "viewer/session/program_rasterizer.h"
 
 namespace strata {
 namespace {

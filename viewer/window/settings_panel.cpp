@@ -12,7 +12,7 @@
 
 #include "core/readable.h"
 #include "render/create_rasterizer.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/colour_names.h"
 #include "viewer/session/legend.h"
 #include "viewer/window/item_positions.h"
 #include "viewer/window/overlay.h"

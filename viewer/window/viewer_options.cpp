@@ -4,6 +4,7 @@
 
 #include "core/program/command_line.h"
 #include "core/version.h"
+#include "viewer/session/picture_size.h"
 
 namespace strata {
 

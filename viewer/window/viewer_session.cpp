@@ -1,4 +1,5 @@
 #include "viewer/window/viewer_session.h"
+#include "viewer/session/draw_defaults.h"
 
 #include <algorithm>
 

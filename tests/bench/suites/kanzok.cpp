@@ -13,6 +13,7 @@
 #include "core/image.h"
 #include "core/log.h"
 #include "core/percentile.h"
+#include "core/picture.h"
 #include "io/file/text_file.h"
 #include "lod/streamer.h"
 #include "tests/bench/suites/measure.h"
@@ -21,7 +22,7 @@
 #include "viewer/bench/page_cache.h"
 #include "viewer/camera/stills.h"
 #include "viewer/session/converter_program.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/draw_defaults.h"
 
 namespace strata::suite {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "core/readable.h"
 #include "render/gl/gl_functions.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/program_rasterizer.h"
 
 namespace strata::suite {
 namespace {

@@ -5,7 +5,7 @@
 #include "core/program/command_line.h"
 #include "core/program/exit_code.h"
 #include "tests/bench/suites/suites.h"
-#include "viewer/session/drawing.h"
+#include "viewer/session/picture_size.h"
 
 namespace strata::suite {
 namespace {
