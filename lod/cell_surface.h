@@ -37,8 +37,8 @@ bool fitSurface(std::span<const CellPoint> points, CellSurface& surface);
 /// Sets `surface.squares`: the squares with points within `layer` of the surface.
 void markSquares(std::span<const CellPoint> points, float layer, CellSurface& surface);
 
-/// The closed squares of a grid that may be coarser than CellSurface's: those that hold a point near the surface, and
-/// those that need none because the surface is outside of the cell there.
+/// The closed squares of a grid that may be coarser than CellSurface's: A square is closed when it holds a point near
+/// the surface, or when the surface leaves the cell there, so that no point is needed.
 struct ClosedSquares {
   SquareRows closed{};
   int side = kCellGrid;      ///< squares along the grid's side

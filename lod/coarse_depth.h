@@ -18,7 +18,7 @@ struct OcclusionOptions {
   double openGapPixels = 64.0;         ///< for one with finer points still to come, which may show a hole in it
   std::uint32_t mostOccluders = 4000;  ///< rasterized for one view, the largest first
 
-  /// A surface hides a thing only if it covers every pixel of it.
+  /// Returns options with which a surface hides an object only if it covers every pixel of that object.
   static OcclusionOptions exact() { return {.gapPixels = 1.0, .openGapPixels = 1.0}; }
 
   bool operator==(const OcclusionOptions&) const = default;

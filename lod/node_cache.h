@@ -53,8 +53,9 @@ class NodeCache {
   /// room. Appends to `out` what the cache no longer holds, which is `data` itself when it was not taken.
   Insertion insert(std::uint32_t node, std::shared_ptr<StreamedNode> data, std::vector<Released>& out);
 
-  /// Pins those of `nodes` (ascending) that are resident and marks them as just wanted, parents last. `found` is
-  /// replaced by one entry for each of `nodes`, null where it is not resident; `pins` gets one for each that is.
+  /// Pins the resident nodes among `nodes`, which ascend, and marks them as just wanted. Parents are marked after their
+  /// children, so that they are evicted later. `found` is replaced by one entry per node, null for a node that is not
+  /// resident; `pins` gets one pin per resident node.
   void pin(std::span<const std::uint32_t> nodes, std::vector<Data>& found, std::vector<Pin>& pins);
   /// Appends to `out` replaced nodes that are no longer pinned.
   void unpin(std::span<const Pin> pins, std::vector<Released>& out);

@@ -6,11 +6,11 @@
 
 namespace strata {
 
-/// How many points a chunk may have so that everything that is in memory while chunks are built stays within
-/// `options.memoryBytes`. `points` is the size of the scan. Throws Error where the memory is too little.
+/// Returns the largest number of points of a chunk for which building stays within `options.memoryBytes`. `points` is
+/// the size of the scan. Throws Error when there is too little memory.
 std::uint64_t chunkPointLimit(const ConvertOptions& options, const PackedFormat& format, std::uint64_t points);
 
-/// How many points may be in memory together where chunks have at most `chunkLimit`.
+/// Returns how many points may be in memory at the same time when no chunk has more than `chunkLimit`.
 std::uint64_t pointsAtOnce(std::uint64_t chunkLimit);
 
 }  // namespace strata

@@ -11,7 +11,7 @@ namespace strata {
 
 /// The representatives of a node in the order in which they are drawn, so that any prefix is an even subsample of the
 /// node. Level l of the n-tree adds a point to each occupied cell that has none yet. Inside a level the points come in
-/// the tree's passes, each an even lattice of its own, and inside a pass in the order of their keys.
+/// passes, each of which is an even lattice, and inside a pass in the order of their keys.
 struct LevelOrder {
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
@@ -27,8 +27,8 @@ struct LevelOrder {
 /// A function of the points alone; `scratch` then holds the entries of their n-tree.
 LevelOrder levelOrder(const LocalPoints& points, std::size_t capacity, TreeScratch& scratch);
 
-/// Returns for each of `count` points the index in `order` of the kept point that represents it: the one in its cell of
-/// the n-tree. `scratch` is as levelOrder() left it.
+/// A point is represented by the kept point in its cell of the n-tree. Returns, for each of `count` points, the index
+/// of that kept point in `order`. Call it directly after levelOrder(), with the same `scratch`.
 std::vector<std::uint32_t> representedBy(const TreeScratch& scratch, std::size_t count,
                                          std::span<const std::uint32_t> order);
 

@@ -22,8 +22,9 @@ struct LocalBounds {
 /// `points` has at least one point.
 LocalBounds boundsOf(const LocalPoints& points);
 
-/// The moments in metres about the cell's lower corner. Points are summed up by 512 in single precision about the
-/// middle of `bounds`, and these sums in double precision, always in the same order: seven digits are right.
+/// Returns the moments in metres about the cell's lower corner. Groups of 512 points are summed in single precision
+/// about the middle of `bounds`; the sums of the groups are added in double precision, always in the same order. Seven
+/// digits are right.
 Moments momentsOf(const LocalPoints& points, const LocalBounds& bounds);
 
 }  // namespace strata

@@ -21,7 +21,7 @@ class AttributeStats {
   void add(const AttributeCounts& counts);
   void clear();
   const AttributeCounts& counts() const { return counts_; }
-  /// The ranges as a store states them, by attribute.
+  /// Returns the range of every attribute in the form that a store keeps, in the order of the layout.
   std::vector<AttributeRange> ranges() const;
 
  private:

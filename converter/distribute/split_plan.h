@@ -36,7 +36,8 @@ std::vector<CrowdedCell> crowdedCells(const RunSet& set, const SplitLimits& limi
 NodeKey smallestCell(NodeKey cell, const std::array<std::uint64_t, 3>& low, const std::array<std::uint64_t, 3>& high,
                      const SplitLimits& limits);
 
-/// The levels of the new set below `parent` for so many points; 0 where no level is left.
+/// Returns how many levels below `parent` the cells of its new run set lie, for a cell with `points` points. Returns 0
+/// when `parent` cannot be divided.
 int levelsOfSplit(std::uint64_t points, NodeKey parent, const SplitLimits& limits);
 
 /// A cell that is split, and the set that its points go to.

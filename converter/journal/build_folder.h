@@ -27,7 +27,7 @@ class BuildFolder {
   std::string spillPath() const { return path_ + "/spill"; }
   /// The name that points.bin waits under while the one with normals has its name and the store is not complete.
   std::string builtPointsPath() const { return path_ + "/points.built"; }
-  /// Gives that file, if there is one, its own name back.
+  /// Renames the file at builtPointsPath(), if there is one, back to points.bin.
   void putBackBuiltPoints();
   /// From now on the destructor leaves the folder for another conversion to resume.
   void keep(bool kept = true) { kept_ = kept; }

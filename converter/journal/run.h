@@ -23,7 +23,8 @@ struct RunShape {
   }
 };
 
-/// The points of a run that lie in one cell; its journal record has one for each cell with points.
+/// The points of a run that lie in one cell; the journal record of the run holds one RunCell for each cell that has
+/// points.
 struct RunCell {
   std::uint32_t cell;  ///< index in the CellGrid of the run set
   std::uint32_t points;

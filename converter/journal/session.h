@@ -10,12 +10,12 @@
 
 namespace strata {
 
-/// The building folder, the journal and the spill of one conversion, as an interrupted conversion left them or new.
-/// Used by one thread; the spill and the journal may be used by several.
+/// The building folder, the journal and the spill of one conversion. They are new, or an interrupted conversion left
+/// them. One thread uses a session; several may use its spill and its journal.
 class Session {
  public:
-  /// With `options.resume` takes over an interrupted conversion. Throws Error where that had other terms or its spill
-  /// is gone; what cannot be resumed stays as it is.
+  /// With `options.resume` the session takes over an interrupted conversion. Throws Error when that conversion had
+  /// other terms or its spill is gone, and then leaves its files alone.
   Session(const Sources& sources, const ConvertOptions& options);
 
   BuildFolder& folder() { return folder_; }

@@ -31,7 +31,7 @@ class Spill {
   void discard();
   const std::string& path() const { return path_; }
 
-  /// Appends the bytes from the start of a page on and returns their offset.
+  /// Appends the bytes, beginning at the next page of the file, and returns their offset.
   std::uint64_t append(std::span<const std::byte> bytes);
   void read(std::uint64_t offset, std::span<std::byte> bytes) const;
 

@@ -57,7 +57,7 @@ class ProgressDisplay {
 
   void run(const std::stop_token& stop) STRATA_EXCLUDES(mutex_);
   void print(const ProgressMoment& moment);
-  /// Everything but the memory.
+  /// Returns the moment with all fields set except the memory.
   ProgressMoment moment() const STRATA_REQUIRES(mutex_);
 
   const Style style_;

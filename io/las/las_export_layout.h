@@ -11,7 +11,7 @@
 
 namespace strata {
 
-/// Which fields of a LAS file the attributes of a store go to, and which of its integers the positions become.
+/// Maps the attributes of a store to the fields of a LAS file, and grid positions to the integers of that file.
 struct LasExportLayout {
   /// `bytes` of a store's record at `from` go to `to` in the file's packed record (lasLayout()).
   struct Copy {

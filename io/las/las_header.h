@@ -50,8 +50,8 @@ std::string lasText(std::string_view field);
 /// file. Throws Error for anything that cannot be read as LAS 1.0 to 1.4.
 LasHeader parseLasHeader(const std::string& file, std::span<const std::byte> bytes, std::uint64_t fileBytes);
 
-/// Decodes the VLRs between header and points. `head` is the file from byte 0 to the first point. When the header
-/// counts too many, as in some real files, the result has those that are whole.
+/// Decodes the VLRs between header and points. `head` is the file from byte 0 to the first point. Some real files have
+/// fewer VLRs than their header counts; the result then holds those that are complete.
 std::vector<LasMeta::Vlr> parseVlrs(std::span<const std::byte> head, const LasHeader& header);
 
 /// The header and all VLRs of a file, including those behind the points (EVLRs). One of more than kLargestVlr bytes,

@@ -25,8 +25,8 @@ struct LazRun {
   std::uint64_t points = 0;
 };
 
-/// Decodes one run. LASzip is shown a file of our making around the bytes of the run, so that nothing which the real
-/// file's header or chunk table says reaches it.
+/// Decodes one run. LASzip gets the bytes of the run inside a file that we make, so it never sees the header or the
+/// chunk table of the real file.
 class LazDecoder {
  public:
   /// `file` and `run` must outlive the decoder. Throws Error when LASzip refuses.

@@ -77,7 +77,8 @@ class LaneFields {
 /// The fields of a packed position plane as lanes, aligned to the top of 10 bits.
 LaneFields planeFields(const PayloadHead& head, int plane);
 
-/// Gives back plane 0 as lanes of points in stored order, aligned to the top of 10 bits.
+/// Decodes plane 0 into one lane per point, in stored order. Every coordinate has 10 bits; where the plane stores
+/// fewer, they are the upper ones.
 class OctreeDecoder {
  public:
   /// False when the bytes are no such plane. kBitSlack bytes behind `stored` must be readable, and both spans must stay

@@ -25,10 +25,10 @@ struct RecordFile {
   std::optional<glm::dvec3> viewpoint;  ///< for SourceInfo
 };
 
-/// Opens such a file as parts of about a million points; a reader holds one block of it at a time. To learn the ranges
-/// of the fields and the step of the grid, the constructor reads all points of a file of up to a million (whose bounds
-/// are then exact), and 64 runs of a thousand points of a larger one. Throws Error when the file is too short for its
-/// point count.
+/// Opens such a file as parts of about a million points; a reader holds one block of it at a time. The constructor
+/// learns the ranges of the fields and the step of the grid from a sample: all points of a file with at most a million,
+/// else 64 runs of a thousand points. The bounds are exact when all points were read. Throws Error when the file is too
+/// short for its point count.
 std::unique_ptr<PointSource> openRecords(std::unique_ptr<ByteSource> bytes, RecordFile file);
 
 }  // namespace strata

@@ -17,8 +17,9 @@ bool sameLayer(const FloodSeeds& seeds, FloodPixel a, FloodPixel b, const FloodS
 /// threads.
 std::vector<FloodLayers> findLayers(const FloodSeeds& seeds, const FloodSettings& settings, const ThreadPool& pool);
 
-/// The third step (4.3) finds, for each seed by index(), the closest points in metres among the layers that its jumps
-/// meet and the neighbours of the seeds there. Jumps that are longer than its reach are skipped.
+/// The third step (4.3) finds the closest points of each seed, in metres. Candidates are the layers at the places that
+/// the seed's jumps reach, and the neighbours of the seeds there. Jumps longer than the seed's reach are skipped. The
+/// result has one entry per seed, by FloodSeeds::index().
 std::vector<FloodNeighbours> findNeighbours(const FloodSeeds& seeds, const std::vector<FloodLayers>& layers,
                                             const FloodSettings& settings, const ThreadPool& pool);
 

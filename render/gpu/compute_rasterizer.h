@@ -20,8 +20,8 @@ struct ComputeExperiment {
 bool hasWideAtomics(GlContext& context);
 
 /// Makes a rasterizer that draws with compute shaders of OpenGL 4.3. compute64 also needs 64-bit integers in shaders
-/// and their atomics (GL_ARB_gpu_shader_int64, and GL_NV_shader_atomic_int64 or its EXT twin). Throws Error, which
-/// names what is missing, where the context cannot.
+/// and their atomics (GL_ARB_gpu_shader_int64, and GL_NV_shader_atomic_int64 or its EXT twin). Throws Error naming the
+/// missing feature when the context lacks one.
 std::unique_ptr<Rasterizer> createComputeRasterizer(ComputeWay way, std::unique_ptr<GlContext> context,
                                                     const RasterizerOptions& options,
                                                     const ComputeExperiment& experiment = {});

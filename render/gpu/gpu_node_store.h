@@ -24,7 +24,8 @@ class GpuNodeStore {
   static constexpr std::uint64_t kPageBytes = std::uint64_t{64} << 20;
   static constexpr std::uint64_t kPartBytes = kPageBytes / 4;
 
-  /// `groupSize` threads share the candidates of a batch in compute32.comp.
+  /// `gpuBytes` caps the node data on the GPU, and `uploadBytesPerFrame` the uploads of one frame. `groupSize` is the
+  /// number of threads of a work group, which decides how compute32.comp lays out the candidates of a batch.
   GpuNodeStore(const GlFunctions& functions, std::uint64_t gpuBytes, std::uint64_t uploadBytesPerFrame,
                std::uint32_t groupSize);
 

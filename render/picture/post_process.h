@@ -53,8 +53,8 @@ class FillSizes {
 };
 
 /// Fills holes by depth-aware dilation. A pixel is filled if it is empty, or if it lies more than kBlendDepth behind
-/// the nearest pixel of the window around it. It becomes the closest pixel of the window that is not so far behind; of
-/// equally close ones the upper, then the left one. All other pixels stay.
+/// the nearest pixel of the window around it. It is replaced by the closest pixel of the window that is not so far
+/// behind; among equally close ones by the upper one, then by the left one. All other pixels stay.
 void fillHoles(VisibilityBuffer& buffer, const FillSizes& sizes, const ThreadPool& pool);
 
 /// Lets every point cover a square of pixels; each pixel takes the nearest of the points that cover it. A point of size

@@ -16,7 +16,7 @@ struct DrawnScene {
   const DrawOptions& options;
 };
 
-/// What resolving works with besides the picture's own memory.
+/// Tools that resolving uses and that outlive a picture.
 struct ResolveTools {
   const ThreadPool& pool;
   GlFlood* flood = nullptr;  ///< fills holes where DrawOptions::jumpFlood asks for it; null: the CPU fills them

@@ -40,7 +40,8 @@ struct ClipSteps {
   glm::vec3 lo, hi;
 };
 
-/// One grid as a view sees it. In a row, xyz holds what a step along each axis adds, and w the base.
+/// One grid as a view sees it. Each row is a linear function of a grid position: w is its value at the origin of the
+/// grid, and x, y and z are what one step along each axis adds.
 struct GridTransform {
   glm::vec4 x, y, depth;
   std::vector<ClipSteps> clipBoxes, clipCutouts;

@@ -161,7 +161,7 @@ struct FloodItem {
   float reach;
 };
 
-/// What FloodSeeds says about one pixel of the half picture.
+/// One entry of FloodSeeds. Seeds are searched in a picture of half the width and height.
 struct FloodSeed {
   uint pixel;
   float depth, reach;

@@ -33,9 +33,10 @@ struct FrameRecord {
   bool hitch = false;
 };
 
-/// How fast the picture fills after the camera was put somewhere new: at the start and at each cut of the path.
-/// Milliseconds from then until the first finished frame with that share of the wanted nodes, drawn as finely as
-/// wanted (at the start: until the list of such a frame); -1: not before the next jump or the end.
+/// How fast the picture fills after a jump of the camera: at the start and at each cut of the path. Each time counts
+/// milliseconds from the jump to the first finished frame that draws a given share of the wanted nodes as finely as
+/// wanted (at the start: to the render list of that frame). It is -1 when the next jump or the end of the path comes
+/// first.
 struct JumpRecord {
   static constexpr double kShares[3] = {0.80, 0.95, 1.00};
 
@@ -85,7 +86,7 @@ struct MeasureNoise {
 /// Nothing for fewer than two runs.
 std::vector<MeasureNoise> measureNoise(std::span<const BenchMeasures> runs);
 
-/// A measure that runs are compared by, under the name it has in text and its place in the JSON.
+/// One measure in which runs are compared: its name in text, and its place in the JSON.
 struct MeasureField {
   enum class Better { lower, higher, neither };
 

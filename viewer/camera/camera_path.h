@@ -56,7 +56,7 @@ class PathClock {
   std::vector<double> pathTimes_, keyTimes_;  ///< ascending, in pairs; empty when the two clocks are the same
 };
 
-/// The frames of the keys with `mark`, ascending: their pictures are taken.
+/// Returns the frames of the keys with `mark`, ascending. A flight saves the pictures of these frames.
 std::vector<int> markedFrames(const CameraPath& path);
 /// The first frame after each cut, ascending.
 std::vector<int> cutFrames(const CameraPath& path);

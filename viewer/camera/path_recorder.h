@@ -11,8 +11,8 @@ namespace strata {
 /// `tolerance`, a share of the sample's distance to its target. The first and the last sample are always picked.
 std::vector<CameraKey> thinned(const std::vector<CameraKey>& samples, double tolerance);
 
-/// A camera path made by hand: keys are set one by one, or recorded while the camera moves. Keys have perspective; in a
-/// view without perspective, things at the target keep their size.
+/// A camera path made by hand: keys are set one by one, or recorded while the camera moves. Keys always have
+/// perspective. A key that is set in an orthographic view shows things at the target in the same size.
 class PathRecorder {
  public:
   static constexpr double kKeySeconds = 2.0;     ///< from a key to the next one that is set by hand

@@ -17,7 +17,7 @@ class InspectorPanel {
 
   explicit InspectorPanel(GlContext::GetProc getProc) : texture_(getProc) {}
 
-  /// Draws the section "Inside" of the settings panel, which switches all this.
+  /// Draws the section "Inside" of the settings panel, whose check boxes switch these displays.
   void drawSection(std::size_t nodesDrawn);
   /// The view that nodes are to be selected for: `view`, or the one in which the user froze the selection.
   const View& chosenFor(const View& view);

@@ -40,8 +40,8 @@ class LayerRenderer {
   LayerRenderer(std::vector<std::shared_ptr<const Store>> stores, const ViewerOptions& options,
                 GlContext::GetProc getProc);
 
-  /// Draws the picture that `view` sees, of nodes that are chosen for `chosenFor`: another view where the choice is
-  /// frozen.
+  /// Draws the picture that `view` sees. The nodes are selected for `chosenFor`, which is an earlier view while the
+  /// user has frozen the selection.
   void draw(const View& view, const View& chosenFor, const DrawOptions& options);
   /// Draws with another backend from now on. Throws Error where it cannot work here; the present one then stays.
   void switchTo(Backend backend);

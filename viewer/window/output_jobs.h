@@ -15,7 +15,7 @@
 
 namespace strata {
 
-/// What pictures and films are made of: the same layers, and drawn in the same way, as the picture on the screen.
+/// The layers and options that pictures and films are drawn with: those of the picture on the screen.
 struct OutputSource {
   Layers& layers;
   Rasterizer& rasterizer;
@@ -41,7 +41,8 @@ class OutputJobs {
 
   /// True while a picture or a film is being drawn: the layers and the rasterizer are in use.
   bool drawing() const { return !std::holds_alternative<std::monostate>(work_); }
-  /// Draws a little more of the picture or film, and shows the progress. Ends it where `cancel` or the user says so.
+  /// Draws a little more of the picture or film, and shows the progress. Ends the job when `cancel` is set or the user
+  /// asks for it.
   void goOn(const OutputSource& source, bool cancel);
 
   /// The path for the project; nothing where it has no keys.
